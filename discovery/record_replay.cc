@@ -13,7 +13,7 @@ namespace mjdiag {
 
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed,
-                                    bool falls) {
+                                    bool falls, const FilterNoise& near) {
   RunOptions options;
   options.seed = seed;
   std::vector<const MeasuredRecord*> records;
@@ -33,7 +33,7 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
     if (falls) {
       // One filter is behind both.
       if (!is_before) return;
-      const FollowedPair pair = CompareFollowed(machine, changes, record);
+      const FollowedPair pair = CompareFollowed(machine, changes, record, &near);
       replays[i].before = pair.before;
       replays[i].after = pair.after;
     } else if (is_before) {

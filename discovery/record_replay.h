@@ -23,9 +23,10 @@ struct RecordReplay {
 /// Of all records, those that fits saw first. A machine that falls is followed by a filter
 /// instead (CompareFollowed).
 /// @param seed  of the noise floors
+/// @param near  to it the noise of the filter is
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
                                     const Changes& changes, std::uint64_t seed,
-                                    bool falls);
+                                    bool falls, const FilterNoise& near);
 
 /// Whether the machine falls on any of the records.
 bool AnyDivergesOpenLoop(const Measurements& measurements);

@@ -23,6 +23,7 @@
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
+#include "mjdiag/discovery/fit/first_look.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/plugin/replay/coarser_run.h"
 #include "mjdiag/plugin/replay/sensor_noise.h"
@@ -208,9 +209,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   if (options.figures) {
     time.Say("figures", 0.9);
     const Changes changes = ChangesOfAnswer(discovery);
-    const bool follows =
-        AddReplays(measurements, changes, machine.setup().compare.skip_samples,
-                   options.seed, discovery);
+    const bool follows = AddReplays(
+        measurements, changes, machine.setup().compare.skip_samples, options.seed,
+        NoiseInTicksOf(explained.nothing, machine.rates().tick()), discovery);
     if (follows) AddPredictions(data, judged, discovery);
     if (!time.IsOver()) AddLadderOf(data, judged, measurements, follows, discovery);
     if (!time.IsOver()) AddMinimumDetectableFaults(data, judged, discovery);

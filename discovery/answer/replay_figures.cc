@@ -25,8 +25,9 @@ namespace {
 constexpr double kDiverged = std::numeric_limits<double>::infinity();
 
 void AddMismatch(const Measurements& measurements, const Changes& changes, Index skip,
-                 std::uint64_t seed, bool follows, Discovery& discovery) {
-  discovery.records = ReplayAll(measurements, changes, seed, follows);
+                 std::uint64_t seed, bool follows, const FilterNoise& near,
+                 Discovery& discovery) {
+  discovery.records = ReplayAll(measurements, changes, seed, follows, near);
   AddMismatchFigures(skip, discovery);
 }
 
@@ -90,9 +91,9 @@ double ColourOf(const VectorXd& scaled, const KeptGains& gains, Index sensors) {
 }  // namespace
 
 bool AddReplays(const Measurements& measurements, const Changes& changes, Index skip,
-                std::uint64_t seed, Discovery& discovery) {
+                std::uint64_t seed, const FilterNoise& near, Discovery& discovery) {
   const auto add = [&](bool follows) {
-    AddMismatch(measurements, changes, skip, seed, follows, discovery);
+    AddMismatch(measurements, changes, skip, seed, follows, near, discovery);
   };
   const auto is_better = [&] {
     return discovery.gain_validation > 0.0 && discovery.gain_train > 0.0;

@@ -11,6 +11,7 @@
 
 namespace mjdiag {
 
+using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
@@ -261,12 +262,30 @@ bool DivergesOpenLoop(const Machine& machine, const Record& measured) {
   }
 }
 
+namespace {
+
+FilterPath LikeliestPath(const Machine& machine, const MeasuredRun& run,
+                         const VectorXd& reading_sd, const FilterNoise* near) {
+  if (near != nullptr) {
+    const std::vector<Index> dofs = LatentDofs(machine, run);
+    try {
+      if (near->size.size() == std::ssize(dofs)) {
+        return FilterLikeliestNear(machine, run, reading_sd, dofs, *near, {});
+      }
+    } catch (const NumericalError&) {  // too far
+    }
+  }
+  return FilterLikeliest(machine, run, reading_sd);
+}
+
+}  // namespace
+
 FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
-                             const Record& measured) {
+                             const Record& measured, const FilterNoise* near) {
   std::vector<std::string> names;
   const Comparison frame = Begin(machine, measured, names);
   const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
-  const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
+  const FilterPath path = LikeliestPath(machine, run, NoiseOf(machine, measured), near);
   FollowedPair pair{frame, frame};
   PredictATick(machine, measured, path, pair.before);
   const Machine changed = machine.With(changes);

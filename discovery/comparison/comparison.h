@@ -77,7 +77,8 @@ struct FollowedPair {
   Comparison before;
   Comparison after;
 };
+/// @param near  a noise near to which it is; null: from nothing
 FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
-                             const Record& measured);
+                             const Record& measured, const FilterNoise* near = nullptr);
 
 }  // namespace mjdiag

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "mjdiag/discovery/regression/whitening.h"
 #include "mjdiag/plugin/replay/bounded_descent.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -43,19 +44,31 @@ class Innovations {
   }
 
   /// Where it was taken last, unless it has been dropped: it takes as many runs as there are
-  /// coordinates.
+  /// coordinates but for those of what pushes, which is known where the machine is.
   const MatrixXd& Jacobian(const VectorXd& x) {
     if (J_.size() > 0) return J_;
-    const VectorXd base = Of(x);
-    MatrixXd J(rows(), size());
-    ParallelForAll(static_cast<int>(size()), [&](int number) {
-      const Index i = number;
+    const Machine here = machine_with_(At(coordinates_, model_, x));
+    std::vector<Machine> pushing;
+    std::vector<Index> by_pushes, by_runs;
+    VectorXd steps(size());
+    for (Index i = 0; i < size(); ++i) {
       const Coordinate& one = coordinates_[static_cast<std::size_t>(i)];
-      double step = one.is_log ? 1e-4 : std::max(1e-3 * std::abs(x[i]), 1e-6);
-      if (x[i] + step > one.upper) step = -step;
-      VectorXd moved = x;
-      moved[i] += step;
-      J.col(i) = (RunAt(moved) - base) / step;
+      steps[i] = one.is_log ? 1e-4 : std::max(1e-3 * std::abs(x[i]), 1e-6);
+      if (x[i] + steps[i] > one.upper) steps[i] = -steps[i];
+      Machine moved = machine_with_(At(coordinates_, model_, Moved(x, i, steps[i])));
+      const bool pushes = here.DiffersInPushes(moved);
+      (pushes ? by_pushes : by_runs).push_back(i);
+      if (pushes) pushing.push_back(std::move(moved));
+    }
+    MatrixXd J(rows(), size());
+    if (!pushing.empty()) {
+      J(Eigen::indexing::all, by_pushes) =
+          ByPushes(here, pushing) * steps(by_pushes).cwiseInverse().asDiagonal();
+    }
+    const VectorXd base = Of(x);
+    ParallelForAll(static_cast<int>(by_runs.size()), [&](int number) {
+      const Index i = by_runs[static_cast<std::size_t>(number)];
+      J.col(i) = (RunAt(Moved(x, i, steps[i])) - base) / steps[i];
     });
     J_ = std::move(J);
     J_at_ = x;
@@ -65,6 +78,27 @@ class Innovations {
   void DropJacobian() { J_.resize(0, 0); }
 
  private:
+  static VectorXd Moved(VectorXd x, Index place, double step) {
+    x[place] += step;
+    return x;
+  }
+
+  /// What they leave more than the machine, to first order.
+  MatrixXd ByPushes(const Machine& machine, const std::vector<Machine>& pushing) const {
+    const std::vector<MatrixXd> pushes =
+        PushesAlong(machine, run_, path_, gains_, pushing);
+    std::vector<Column> columns(pushes.size());
+    std::vector<const Column*> all;
+    for (std::size_t i = 0; i < pushes.size(); ++i) {
+      for (Index dof = 0; dof < pushes[i].rows(); ++dof) {
+        if (pushes[i].row(dof).isZero(0.0)) continue;
+        columns[i].forces.emplace_back(dof, pushes[i].row(dof).transpose());
+      }
+      all.push_back(&columns[i]);
+    }
+    return -WhitenedAlong(path_, gains_, all);
+  }
+
   VectorXd RunAt(const VectorXd& x) const {
     return PredictAlong(machine_with_(At(coordinates_, model_, x)), run_, path_,
                         gains_);

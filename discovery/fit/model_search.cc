@@ -57,7 +57,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
-  ChooseFriction();
+  ChooseFriction(false);
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
@@ -83,20 +83,24 @@ const Moves& ModelSearch::MovesNow(Standing& standing) {
   return standing.moves.emplace(at_every_shape_, std::move(moves)).first->second;
 }
 
-void ModelSearch::ChooseFriction() {
+bool ModelSearch::ChooseFriction(bool every_form) {
   // What was asked of all but the same friction is known.
   constexpr double kAlike = 0.2;
   Model rubs;
   for (const Member& member : found_.fit.model) {
     if (found_.blocks[member.block].IsDryFriction()) rubs.push_back(member);
   }
-  if (AreNear(rubs, asked_forms_of_, kAlike)) return;
-  asked_forms_of_ = rubs;
-  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path});
-  if (!other) return;
+  every_form = every_form || !AreSpeedsKnown(found_.blocks, found_.fit);
+  Model& asked_of = every_form ? asked_every_form_of_ : asked_forms_of_;
+  if (AreNear(rubs, asked_of, kAlike)) return false;
+  asked_of = rubs;
+  if (every_form) asked_forms_of_ = rubs;
+  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, every_form);
+  if (!other) return false;
   Say("joints that stand: " + Difference(other->score()) + "  " +
       ModelText(found_.blocks, other->fit.model));
   Take(std::move(*other));
+  return true;
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
@@ -135,7 +139,12 @@ bool ModelSearch::Step() {
   }
   if (!move) move = BestMove(standing);
   if (!move && asks_inputs) move = SmoothedInputs();
-  if (!move) return false;
+  if (!move) {
+    if (IsOver() || !ChooseFriction(true)) return false;
+    found_.rivals.clear();
+    found_.steps_taken.push_back({found_.fit, found_.path.noise});
+    return true;
+  }
   if (!ChooseFinerSteps(move->settled.score())) Adopt(std::move(*move));
   return true;
 }
@@ -204,6 +213,7 @@ void ModelSearch::LookAtAll() {
   hopeless_.clear();
   worthless_.clear();
   asked_forms_of_.clear();
+  asked_every_form_of_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {
     if (block.candidate) WidenFrequencies(*block.candidate, as_measured_.sample_time);
@@ -242,6 +252,7 @@ Explained ModelSearch::Run() {
       ChooseFinerSteps(found_.score - kLeastGain);
       may_be_at_ends_ = true;
       asked_forms_of_.clear();
+      asked_every_form_of_.clear();
       looks_at_forces_ = true;
       hopeless_.clear();
       StepOn();

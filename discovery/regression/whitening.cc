@@ -16,21 +16,17 @@ namespace {
 // Columns that go through the run side by side: their deviations stay in the cache.
 constexpr Index kTogether = 32;
 
-}  // namespace
-
-Whitening::Whitening(const FilterPath& path, KeptGains gains)
-    : path_(path), gains_(std::move(gains)) {}
-
-void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index first,
-                            Index count, MatrixXd& out) const {
-  const Index n = gains_.K.rows();
-  const Index nf = path_.dof_count();
+void ForwardInto(const FilterPath& path, const KeptGains& gains,
+                 const std::vector<const Column*>& columns, Index first, Index count,
+                 MatrixXd& out) {
+  const Index n = gains.K.rows();
+  const Index nf = path.dof_count();
   const Index ns = n - nf - 1;
-  const Index nv = path_.tangents.front().B.cols();
+  const Index nv = path.tangents.front().B.cols();
   MatrixXd d(n, count);
   MatrixXd moved(ns, count);
   MatrixXd F = MatrixXd::Zero(nv, count);
-  MatrixXd H = MatrixXd::Zero(path_.sensors(), count);
+  MatrixXd H = MatrixXd::Zero(path.sensors(), count);
   MatrixXd latent;
   const TickTangent* of_latent = nullptr;
   Eigen::RowVectorXd y(count);
@@ -47,21 +43,21 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
   for (Index dof = 0; dof < nv; ++dof) {
     if (forced[static_cast<std::size_t>(dof)]) dofs.push_back(dof);
   }
-  for (std::size_t record = 0; record < path_.first.size(); ++record) {
+  for (std::size_t record = 0; record < path.first.size(); ++record) {
     d.setZero();
-    for (Index k = path_.first[record]; k < path_.EndOf(record); ++k) {
-      const TickTangent& tangent = path_.At(k);
+    for (Index k = path.first[record]; k < path.EndOf(record); ++k) {
+      const TickTangent& tangent = path.At(k);
       for (Index j = 0; j < count; ++j) {
         for (const auto& [dof, signal] :
              columns[static_cast<std::size_t>(first + j)]->forces) {
           F(dof, j) = signal[k];
         }
       }
-      const KeptGains::Tick& tick = gains_.ticks[static_cast<std::size_t>(k)];
+      const KeptGains::Tick& tick = gains.ticks[static_cast<std::size_t>(k)];
       for (Index row = tick.first; row < tick.end; ++row) {
         const KeptGains::Reading& reading =
-            gains_.readings[static_cast<std::size_t>(row)];
-        y.noalias() = gains_.C.col(row).transpose() * d;
+            gains.readings[static_cast<std::size_t>(row)];
+        y.noalias() = gains.C.col(row).transpose() * d;
         if (reading.late) y += tangent.D.row(reading.sensor) * F;
         if (any_reading) {
           for (Index j = 0; j < count; ++j) {
@@ -71,12 +67,12 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
             }
           }
         }
-        out.row(row).segment(first, count) = y * gains_.inverse_sd[row];
-        d.noalias() -= gains_.K.col(row) * y;
+        out.row(row).segment(first, count) = y * gains.inverse_sd[row];
+        d.noalias() -= gains.K.col(row) * y;
       }
       if (of_latent != &tangent) {
         of_latent = &tangent;
-        latent = tangent.B(Eigen::indexing::all, path_.dofs);
+        latent = tangent.B(Eigen::indexing::all, path.dofs);
       }
       moved.noalias() = tangent.A * d.topRows(ns);
       moved.noalias() += latent * d.middleRows(ns, nf);
@@ -88,20 +84,26 @@ void Whitening::ForwardInto(const std::vector<const Column*>& columns, Index fir
         }
       }
       d.topRows(ns) = moved;
-      d.bottomRows(nf + 1) = gains_.rho.asDiagonal() * d.bottomRows(nf + 1);
+      d.bottomRows(nf + 1) = gains.rho.asDiagonal() * d.bottomRows(nf + 1);
     }
   }
 }
 
-MatrixXd Whitening::Of(const std::vector<const Column*>& columns) const {
+}  // namespace
+
+MatrixXd WhitenedAlong(const FilterPath& path, const KeptGains& gains,
+                       const std::vector<const Column*>& columns) {
   const Index count = std::ssize(columns);
-  MatrixXd out(rows(), count);
+  MatrixXd out(gains.rows(), count);
   ParallelFor(static_cast<int>((count + kTogether - 1) / kTogether), [&](int chunk) {
     const Index first = chunk * kTogether;
-    ForwardInto(columns, first, std::min(kTogether, count - first), out);
+    ForwardInto(path, gains, columns, first, std::min(kTogether, count - first), out);
   });
   return out;
 }
+
+Whitening::Whitening(const FilterPath& path, KeptGains gains)
+    : path_(path), gains_(std::move(gains)) {}
 
 std::vector<Whitening::Transposed> Whitening::TransposedTimes(const MatrixXd& u) const {
   const Index n = gains_.K.rows();

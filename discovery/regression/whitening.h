@@ -19,6 +19,10 @@
 
 namespace mjdiag {
 
+/// W times every column, rows x columns.
+Eigen::MatrixXd WhitenedAlong(const FilterPath& path, const KeptGains& gains,
+                              const std::vector<const Column*>& columns);
+
 class Whitening final : public RowMap {
  public:
   /// @param path  has to outlive it
@@ -28,14 +32,13 @@ class Whitening final : public RowMap {
   Eigen::Index rows() const override { return gains_.rows(); }
   const Eigen::VectorXd& left() const override { return gains_.left; }
   double log_determinant() const override { return gains_.log_determinant; }
-  Eigen::MatrixXd Of(const std::vector<const Column*>& columns) const override;
+  Eigen::MatrixXd Of(const std::vector<const Column*>& columns) const override {
+    return WhitenedAlong(path_, gains_, columns);
+  }
 
   std::vector<Transposed> TransposedTimes(const Eigen::MatrixXd& u) const override;
 
  private:
-  void ForwardInto(const std::vector<const Column*>& columns, Eigen::Index first,
-                   Eigen::Index count, Eigen::MatrixXd& out) const;
-
   const FilterPath& path_;
   KeptGains gains_;
 };

@@ -44,6 +44,28 @@ void ActiveEffects::Act(const mjModel& model, mjData& data,
   for (const auto& effect : effects_) effect->Bind(model, data);
 }
 
+bool ActiveEffects::FollowTheirJoints() const {
+  if (!bodies_.empty()) return false;
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    if (dof_of_[i] >= 0 && !effects_[i]->FollowsItsJoint()) return false;
+  }
+  return true;
+}
+
+void ActiveEffects::PushInto(const mjModel& model, mjData& data,
+                             std::span<double> forces) noexcept {
+  Release(data);
+  Damp(model, data);
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    if (dof_of_[i] >= 0) effects_[i]->Push(model, data);
+  }
+  std::ranges::fill(forces, 0.0);
+  for (const int dof : dofs_) {
+    forces[static_cast<std::size_t>(dof)] = data.qfrc_applied[dof];
+  }
+  Release(data);
+}
+
 void ActiveEffects::Damp(const mjModel& model, mjData& data) noexcept {
   for (const int dof : dofs_) damping_[static_cast<std::size_t>(dof)] = 0.0;
   for (std::size_t i = 0; i < effects_.size(); ++i) {

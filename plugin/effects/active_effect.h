@@ -40,6 +40,9 @@ class ActiveEffect {
   virtual double Damping(const mjModel&, const mjData&) const noexcept { return 0.0; }
   /// Adds its force to data.qfrc_applied, from positions and velocities of this step.
   virtual void Push(const mjModel&, mjData&) noexcept {}
+  /// Whether its force follows from where its own joint is and how fast, from time and from what
+  /// it remembers: it looks at nothing else in mjData.
+  virtual bool FollowsItsJoint() const noexcept { return false; }
   /// Changes the bounds of dry friction, when all commands and forces of this step
   /// are known.
   virtual void Bind(const mjModel&, mjData&) noexcept {}
@@ -75,6 +78,12 @@ class ActiveEffects {
   /// data.qfrc_applied of the joints that have such effects.
   /// @param off  actuators that are an open circuit, whatever their command
   void Act(const mjModel& model, mjData& data, std::span<const int> off = {}) noexcept;
+  /// Whether whatever pushes at a joint follows that alone (FollowsItsJoint), and no effect adds
+  /// a body.
+  bool FollowTheirJoints() const;
+  /// What they push with then, by qpos, qvel and time of `data` alone: the same as Act does,
+  /// without commands. nv
+  void PushInto(const mjModel& model, mjData& data, std::span<double> forces) noexcept;
   /// Takes the forces off again.
   void Release(mjData& data) noexcept;
   /// Takes the memory of all from another run of the same machine.

@@ -9,6 +9,7 @@ class JointForce final : public ActiveEffect {
  public:
   JointForce(const JointForceEffect& effect, const JointOf& joint, EffectValues values)
       : effect_(effect), joint_(joint), values_(std::move(values)) {}
+  bool FollowsItsJoint() const noexcept override { return true; }
   void Push(const mjModel&, mjData& data) noexcept override {
     const double q = data.qpos[joint_.position] - joint_.rest;
     const double v = data.qvel[joint_.dof];
@@ -26,6 +27,7 @@ class JointDamping final : public ActiveEffect {
   JointDamping(const JointDampingEffect& effect, const JointOf& joint,
                EffectValues values)
       : effect_(effect), joint_(joint), values_(std::move(values)) {}
+  bool FollowsItsJoint() const noexcept override { return true; }
   double Damping(const mjModel&, const mjData& data) const noexcept override {
     const double q = data.qpos[joint_.position] - joint_.rest;
     return effect_.Damping(q, data.qvel[joint_.dof], values_);

@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/registry.h"
+#include "mjdiag/plugin/machine/same_plant.h"
 #include "mjdiag/plugin/plant/channels.h"
 #include "mjdiag/plugin/plant/instance_slot.h"
 #include "mjdiag/plugin/plant/linearize.h"
@@ -202,6 +203,32 @@ Machine Machine::ChangedAs(const Machine& other) const {
     changed.DampBetweenSteps(other.without_steps_);
   }
   return changed;
+}
+
+namespace {
+
+/// Those that do not push at joints.
+std::vector<PlacedEffect> OtherEffects(const Machine& machine) {
+  std::vector<PlacedEffect> effects = machine.effects();
+  std::erase_if(effects, [](const PlacedEffect& placed) {
+    return placed.effect->element() == mjOBJ_JOINT &&
+           placed.effect->form() == Form::kNumeric;
+  });
+  return effects;
+}
+
+bool HasBodiesOfEffects(const Machine& machine) {
+  const ActiveEffects effects(machine.channels(), machine.plant(), machine.effects());
+  return !effects.bodies().empty();
+}
+
+}  // namespace
+
+bool Machine::DiffersInPushes(const Machine& other) const {
+  return rates().substeps == other.rates().substeps &&
+         AreSamePlant(plant(), other.plant()) &&
+         OtherEffects(*this) == OtherEffects(other) && !HasBodiesOfEffects(*this) &&
+         !HasBodiesOfEffects(other);
 }
 
 Machine Machine::WithSetup(Setup setup) const {

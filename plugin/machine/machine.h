@@ -82,6 +82,9 @@ class Machine {
   /// With what With and WithoutSteps have made of another one since it had the changes of
   /// this one, in its steps: this machine with another load, for example.
   Machine ChangedAs(const Machine& other) const;
+  /// Whether another one is this machine but for effects that push at joints, and add no
+  /// bodies: from the same state and with the same commands they differ by forces alone.
+  bool DiffersInPushes(const Machine& other) const;
   /// The same plant, resting where it does, under another setup that names the same
   /// channels.
   Machine WithSetup(Setup setup) const;

@@ -67,11 +67,32 @@ void Stepper::Act(const mjModel& model, mjData& data, TickControl& control) noex
       if (!control.IsOn(i)) off_.push_back(actuators_[i]);
     }
   }
+  for (std::size_t j = 0; j < others_.size(); ++j) {
+    Command(data, control);
+    others_[j].Act(model, data, off_);
+    other_pushes_.col(static_cast<Eigen::Index>(j)) +=
+        Eigen::VectorXd::Map(data.qfrc_applied, model.nv);
+    others_[j].Release(data);
+  }
+  Command(data, control);
+  if (++substep_ == substeps_) substep_ = 0;
+  effects_.Act(model, data, off_);
+  if (!others_.empty()) {
+    other_pushes_.colwise() -= Eigen::VectorXd::Map(data.qfrc_applied, model.nv);
+  }
+}
+
+void Stepper::Command(mjData& data, const TickControl& control) const noexcept {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     data.ctrl[actuators_[i]] = inputs_[i] + control.Above(i, substep_);
   }
-  if (++substep_ == substeps_) substep_ = 0;
-  effects_.Act(model, data, off_);
+}
+
+void Stepper::TellPushesOf(const std::vector<Machine>& others) {
+  others_.clear();
+  for (const Machine& other : others) {
+    others_.emplace_back(other.channels(), other.plant(), other.effects());
+  }
 }
 
 void Stepper::Advance(const mjModel& model, mjData& data, TickControl& control,
@@ -83,6 +104,10 @@ void Stepper::AdvanceSteps(int steps, const mjModel& model, mjData& data,
                            TickControl& control,
                            const std::function<void()>& after_step,
                            bool has_positions) {
+  if (!others_.empty()) {
+    other_pushes_.setZero(model.nv, std::ssize(others_));
+    told_steps_ = steps;
+  }
   for (int i = 0; i < steps; ++i) {
     if (i == 0 && has_positions) {
       BeginStepInPlace(model, data);

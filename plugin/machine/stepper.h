@@ -10,6 +10,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -82,14 +83,30 @@ class Stepper {
     effects_.Distort(model, data, outputs, static_cast<double>(tick) * tick_);
   }
   const std::vector<ActiveEffects::BodyOf>& bodies() const { return effects_.bodies(); }
+
+  /// ActiveEffects
+  bool EffectsFollowTheirJoints() const { return effects_.FollowTheirJoints(); }
+  void PushInto(const mjModel& model, mjData& data, std::span<double> forces) noexcept {
+    effects_.PushInto(model, data, forces);
+  }
+  /// From now on tells in AdvanceSteps what effects of other machines would push with where
+  /// this one is (Machine::DiffersInPushes): they remember what they do there, and do nothing.
+  /// Only while forces are held.
+  void TellPushesOf(const std::vector<Machine>& others);
+  /// Of each, its forces less those of this machine, means of the steps. nv x others [N, N m]
+  Eigen::MatrixXd OtherPushes() const { return other_pushes_ / told_steps_; }
   /// Goes on as another one of the same machine would: the tick that it is at, and what
   /// its effects remember.
   void Recall(const Stepper& other) noexcept;
 
  private:
   void Act(const mjModel& model, mjData& data, TickControl& control) noexcept;
+  void Command(mjData& data, const TickControl& control) const noexcept;
 
   ActiveEffects effects_;
+  std::vector<ActiveEffects> others_;
+  Eigen::MatrixXd other_pushes_;  // nv x others, sums
+  double told_steps_ = 1.0;
   double tick_;  // [s]
   int substeps_;
   int substep_ = 0;

@@ -132,6 +132,33 @@ void TickDifferences::Refresh(const PlantState& from, const VectorXd& forces,
   }
 }
 
+void TickDifferences::PushSlopes::AddTo(TickTangent& step, double sign) const {
+  const Index nv = position.size();
+  for (Index dof = 0; dof < nv; ++dof) {
+    step.A.col(dof) += sign * position[dof] * step.B.col(dof);
+    step.A.col(nv + dof) += sign * velocity[dof] * step.B.col(dof);
+  }
+}
+
+TickDifferences::PushSlopes TickDifferences::SlopesOf(const PlantState& from,
+                                                      std::int64_t tick,
+                                                      const VectorXd& sd) {
+  const Index nv = force_steps_.size();
+  const mjModel& model = map_.model();
+  // Each pushes on its own joint alone: all are moved at once.
+  const VectorXd h = steps_.head(2 * nv).cwiseMax(sd.head(2 * nv));
+  const auto slopes = [&](Index first) {
+    VectorXd dx = VectorXd::Zero(steps_.size());
+    dx.segment(first, nv) = h.segment(first, nv);
+    const PlantState above = Moved(model, from, dx);
+    const PlantState below = Moved(model, from, -dx);
+    return VectorXd((map_.PushesAt(above.position, above.velocity, tick) -
+                     map_.PushesAt(below.position, below.velocity, tick))
+                        .cwiseQuotient(2.0 * h.segment(first, nv)));
+  };
+  return {slopes(0), slopes(nv)};
+}
+
 void TickDifferences::Column(Probe probe, const PlantState& from,
                              const VectorXd& forces, std::int64_t tick,
                              TickControl& control, Index state, double h,

@@ -54,6 +54,17 @@ class TickDifferences {
                TickControl& control, std::span<const Eigen::Index> dofs, bool of_step,
                bool positions, const Eigen::VectorXd& sd,
                const Eigen::VectorXd& force_sd, TickTangent& tangent);
+  /// Slopes of what effects that follow their joints push with, by the position and the
+  /// velocity of each, over what is not known of them.
+  struct PushSlopes {
+    Eigen::VectorXd position;  ///< nv [N/m, N m/rad]
+    Eigen::VectorXd velocity;  ///< the same s
+    /// Takes them out of the tangent of a physics step (-1), or puts them in.
+    void AddTo(TickTangent& step, double sign) const;
+  };
+  /// @param sd  of the state, ns
+  PushSlopes SlopesOf(const PlantState& from, std::int64_t tick,
+                      const Eigen::VectorXd& sd);
   /// Velocity that a force of 1 gives a degree of freedom in a tick where the model is drawn.
   double VelocityOf(Eigen::Index dof) const {
     return steps_[force_steps_.size() + dof] / force_steps_[dof];

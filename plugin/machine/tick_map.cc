@@ -99,6 +99,20 @@ const TickMap::Result& TickMap::ProbeStep(const PlantState& from,
   return probed_;
 }
 
+// What follows from positions stays what it was in data_, and of that effects that follow
+// their joints see nothing.
+VectorXd TickMap::PushesAt(const VectorXd& position, const VectorXd& velocity,
+                           std::int64_t tick) {
+  probe_.Recall(before_);
+  std::ranges::copy(position, data_->qpos);
+  std::ranges::copy(velocity, data_->qvel);
+  data_->time = static_cast<double>(tick) * tick_;
+  VectorXd forces(model_->nv);
+  probe_.PushInto(*model_, *data_,
+                  {forces.data(), static_cast<std::size_t>(forces.size())});
+  return forces;
+}
+
 void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
                       const VectorXd& forces, std::int64_t tick, TickControl& control,
                       Result& result) {
@@ -112,7 +126,6 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
   result.is_constrained = false;
   std::ranges::fill(friction_, Friction{});
   const auto note_constraints = [&] {
-    result.is_constrained |= data_->nefc > 0;
     for (int row = 0; row < data_->nefc; ++row) {
       const int type = data_->efc_type[row];
       const int id = data_->efc_id[row];
@@ -124,8 +137,10 @@ void TickMap::Advance(Stepper& stepper, int steps, const PlantState& from,
         const bool slides =
             state == mjCNSTRSTATE_LINEARNEG || state == mjCNSTRSTATE_LINEARPOS;
         (slides ? friction.slides : friction.sticks) = true;
+        result.is_constrained |= !slides;
         continue;
       }
+      result.is_constrained = true;
       Mix(result.pattern, static_cast<std::uint64_t>(type));
       Mix(result.pattern, static_cast<std::uint64_t>(id));
       Mix(result.pattern, static_cast<std::uint64_t>(state));

@@ -32,7 +32,8 @@ class TickMap {
     /// Of what decides by switching: constraints that are active and how, in every
     /// physics step, of dry friction in all steps together, and actuators that are off.
     std::uint64_t pattern = 0;
-    bool is_constrained = false;  ///< any constraint, in any step
+    /// Any constraint in any step, but for dry friction that slides: a constant force.
+    bool is_constrained = false;
     bool diverged = false;
   };
 
@@ -67,6 +68,18 @@ class TickMap {
   /// The same, of the first physics step of the tick alone.
   const Result& ProbeStep(const PlantState& from, const Eigen::VectorXd& forces,
                           std::int64_t tick, TickControl& control);
+  /// ActiveEffects::FollowTheirJoints
+  bool EffectsFollowTheirJoints() const { return stepper_.EffectsFollowTheirJoints(); }
+  /// What effects push with at the beginning of a tick that starts as the last Run did, but from
+  /// these positions and velocities; where they follow their joints. nv [N, N m]
+  Eigen::VectorXd PushesAt(const Eigen::VectorXd& position,
+                           const Eigen::VectorXd& velocity, std::int64_t tick);
+  /// As Stepper::TellPushesOf, of Run.
+  void TellPushesOf(const std::vector<Machine>& others) {
+    stepper_.TellPushesOf(others);
+  }
+  /// nv x others [N, N m]
+  Eigen::MatrixXd OtherPushes() const { return stepper_.OtherPushes(); }
   /// Physics steps of a tick.
   int steps() const { return steps_; }
   bool reads_at_end() const { return reads_at_end_; }

@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/replay/kept_gains.h"
 
 #include <cmath>
+#include <functional>
 
 #include "mjdiag/plugin/machine/tick_map.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
@@ -73,8 +74,13 @@ KeptGains KeepGains(const FilterPath& path, const FilterNoise& noise,
   return kept;
 }
 
-VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
-                      const FilterPath& path, const KeptGains& gains) {
+namespace {
+
+/// @param after_tick  called with the map and the sample after every tick
+VectorXd RunAlong(const Machine& machine, const MeasuredRun& run,
+                  const FilterPath& path, const KeptGains& gains,
+                  const std::vector<Machine>& others,
+                  const std::function<void(const TickMap&, Index)>& after_tick) {
   VectorXd left(gains.rows());
   const Index nf = path.dof_count();
   const Index ns = path.pulled.rows() - nf - 1;
@@ -82,6 +88,11 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
     const auto record = static_cast<std::size_t>(number);
     const Machine during = DuringRecord(run.records[record], machine);
     TickMap map(during);
+    std::vector<Machine> others_then;
+    for (const Machine& other : others) {
+      others_then.push_back(DuringRecord(run.records[record], other));
+    }
+    map.TellPushesOf(others_then);
     const mjModel& model = map.model();
     RecordedInputs inputs(during, run);
     PlantState state = map.Begun(path.starts[record].state);
@@ -120,6 +131,7 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
       inputs.StayAt(k);
       const TickMap::Result& ticked = map.Run(state, applied, tick, inputs);
       if (ticked.diverged) throw NumericalError("fit: the run diverges");
+      if (after_tick) after_tick(map, k);
       PlantState next = ticked.state;
       z.setZero();
       if (row < end) {
@@ -139,6 +151,27 @@ VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
     }
   });
   return left;
+}
+
+}  // namespace
+
+VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
+                      const FilterPath& path, const KeptGains& gains) {
+  return RunAlong(machine, run, path, gains, {}, {});
+}
+
+std::vector<MatrixXd> PushesAlong(const Machine& machine, const MeasuredRun& run,
+                                  const FilterPath& path, const KeptGains& gains,
+                                  const std::vector<Machine>& others) {
+  std::vector<MatrixXd> pushes(others.size(),
+                               MatrixXd::Zero(machine.plant().nv, path.samples()));
+  RunAlong(machine, run, path, gains, others, [&](const TickMap& map, Index k) {
+    const MatrixXd then = map.OtherPushes();
+    for (std::size_t o = 0; o < others.size(); ++o) {
+      pushes[o].col(k) = then.col(static_cast<Index>(o));
+    }
+  });
+  return pushes;
 }
 
 }  // namespace mjdiag

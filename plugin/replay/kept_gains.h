@@ -49,5 +49,10 @@ KeptGains KeepGains(const FilterPath& path);
 /// NumericalError if it diverges.
 Eigen::VectorXd PredictAlong(const Machine& machine, const MeasuredRun& run,
                              const FilterPath& path, const KeptGains& gains);
+/// What machines that differ from it in pushes (Machine::DiffersInPushes) push with more where
+/// it is then, of each nv x samples [N, N m].
+std::vector<Eigen::MatrixXd> PushesAlong(const Machine& machine, const MeasuredRun& run,
+                                         const FilterPath& path, const KeptGains& gains,
+                                         const std::vector<Machine>& others);
 
 }  // namespace mjdiag

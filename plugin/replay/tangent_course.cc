@@ -88,6 +88,7 @@ TangentCourse::TangentCourse(const Machine& machine, TickMap& map)
       // What is missing may push where nothing drives and nothing is measured, too.
       differences_(map, machine.rates().tick(), AllDofs(machine.plant())),
       with_effects_(DofsWithEffects(machine)),
+      follow_their_joints_(map.EffectsFollowTheirJoints()),
       rubbing_(DofsThatRub(machine.plant())),
       shortest_(std::max<std::int64_t>(
           1, std::lround(kStretchTime * machine.rates().control))),
@@ -100,6 +101,20 @@ bool TangentCourse::IsBySteps() const {
 
 TickTangent TangentCourse::OfTick(const TickTangent& part) const {
   return IsBySteps() ? Repeated(part, map_.steps()) : part;
+}
+
+TickTangent TangentCourse::PartAt(const PlantState& from, const VectorXd& forces,
+                                  std::int64_t tick, TickControl& control) {
+  if (!IsBySteps()) return differences_.Of(from, forces, tick, control, with_effects_);
+  if (!IsByPushes()) {
+    return differences_.OfFirstStep(from, forces, tick, control, with_effects_);
+  }
+  TickTangent part = differences_.OfFirstStep(from, forces, tick, control);
+  if (!with_effects_.empty()) {
+    const VectorXd known = VectorXd::Zero(map_.states());
+    differences_.SlopesOf(from, tick, known).AddTo(part, -1.0);
+  }
+  return part;
 }
 
 // A joint that may stick for all that is known of its velocity and of what pushes it moves
@@ -151,9 +166,7 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   const auto [entry, is_new] = known_.try_emplace(map_.last().pattern);
   Known& known = entry->second;
   if (is_new || tick - known.since >= known.stretch) {
-    known.of_part =
-        is_step ? differences_.OfFirstStep(from, forces, tick, control, with_effects_)
-                : differences_.Of(from, forces, tick, control, with_effects_);
+    known.of_part = PartAt(from, forces, tick, control);
     TickTangent here = OfTick(known.of_part);
     known.since = tick;
     if (!is_new && AreAlike(here, known.of_tick)) {
@@ -182,13 +195,17 @@ std::size_t TangentCourse::Next(const PlantState& from, const VectorXd& forces,
   }
   if (refreshed_ && HoldsFor(*refreshed_, now, force_sd)) return refreshed_->place;
   TickTangent part = known.of_part;
+  if (IsByPushes()) {
+    differences_.SlopesOf(from, tick, sd).AddTo(part, 1.0);
+  } else {
+    differences_.Refresh(from, forces, tick, control, with_effects_, is_step, true, sd,
+                         force_sd, part);
+  }
   const bool may_stand = !dofs.empty();
   // Dry friction does not ask where a joint is.
   std::erase_if(dofs, [&](Index dof) {
     return std::ranges::find(with_effects_, dof) != with_effects_.end();
   });
-  differences_.Refresh(from, forces, tick, control, with_effects_, is_step, true, sd,
-                       force_sd, part);
   TickTangent here = OfTick(part);
   differences_.Refresh(from, forces, tick, control, dofs, false, false, sd, force_sd,
                        here);

@@ -32,6 +32,10 @@ class TangentCourse {
   /// step as often as there are some.
   bool IsBySteps() const;
   TickTangent OfTick(const TickTangent& part) const;
+  /// Whether what effects do to it is known by what they push with.
+  bool IsByPushes() const { return follow_their_joints_ && IsBySteps(); }
+  TickTangent PartAt(const PlantState& from, const Eigen::VectorXd& forces,
+                     std::int64_t tick, TickControl& control);
   /// Degrees of freedom that may stand, whose columns hold for this tick only.
   std::vector<Eigen::Index> RestlessAt(const PlantState& from,
                                        const Eigen::VectorXd& sd,
@@ -40,12 +44,13 @@ class TangentCourse {
   TickMap& map_;
   TickDifferences differences_;
   std::vector<Eigen::Index> with_effects_;
+  bool follow_their_joints_;
   std::vector<Eigen::Index> rubbing_;  // with dry friction
   std::int64_t shortest_;              // stretch, in ticks
   std::int64_t of_effects_;            // the same
   std::int64_t last_ = 0;              // tick
-  /// A tangent without columns q and v of where effects push, from when on it is taken to
-  /// hold, and for how long.
+  /// A tangent without what effects push with, or without columns q and v of where they push,
+  /// from when on it is taken to hold, and for how long.
   struct Known {
     TickTangent of_part = {};  // of the tick, or of its first physics step
     TickTangent of_tick = {};

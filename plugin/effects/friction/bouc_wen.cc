@@ -36,6 +36,7 @@ class BoucWenForce final : public RememberingEffect<BoucWenForce> {
     if (slides > 0.0) most_ = std::pow(stiffness_ / slides, 1.0 / exponent_);
   }
 
+  bool FollowsItsJoint() const noexcept override { return true; }
   // Over a step v is constant and z a function of the travel v h alone; classical Runge-
   // Kutta in parts short enough for its memory. A stiffer one stays below where it slides.
   void Push(const mjModel& model, mjData& data) noexcept override {

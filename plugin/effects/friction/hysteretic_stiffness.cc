@@ -14,6 +14,7 @@ class SpringWithMemory final : public RememberingEffect<SpringWithMemory> {
  public:
   SpringWithMemory(const JointOf& joint, const EffectValues& values)
       : stiffness_(values[0]), loss_(values[1]), follower_(values[2]), joint_(joint) {}
+  bool FollowsItsJoint() const noexcept override { return true; }
   void Push(const mjModel& model, mjData& data) noexcept override {
     const double z = follower_.Step(data.qvel[joint_.dof], model.opt.timestep);
     const double q = data.qpos[joint_.position] - joint_.rest;

@@ -70,6 +70,7 @@ class BristleForce final : public RememberingEffect<BristleForce> {
       : bristles_(values), dof_(dof) {
     bristles_.Limit({model, dof});
   }
+  bool FollowsItsJoint() const noexcept override { return true; }
   void Push(const mjModel& model, mjData& data) noexcept override {
     data.qfrc_applied[dof_] += bristles_.Step(data.qvel[dof_], model.opt.timestep);
   }

@@ -17,6 +17,7 @@ class Presliding final : public RememberingEffect<Presliding> {
         follower_(values[0] / stiffness_),
         active_(values[0] > 0.0),
         dof_(dof) {}
+  bool FollowsItsJoint() const noexcept override { return true; }
   void Push(const mjModel& model, mjData& data) noexcept override {
     if (!active_) return;
     data.qfrc_applied[dof_] -=

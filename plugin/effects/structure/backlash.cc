@@ -19,6 +19,7 @@ class Play final : public ActiveEffect {
         stiffness_(model.jnt_stiffness[joint]),
         joint_(model, joint),
         rest_(model.qpos_spring[joint_.position]) {}
+  bool FollowsItsJoint() const noexcept override { return true; }
   void Push(const mjModel&, mjData& data) noexcept override {
     const double strain = data.qpos[joint_.position] - rest_;
     data.qfrc_applied[joint_.dof] +=

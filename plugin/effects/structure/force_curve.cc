@@ -32,6 +32,7 @@ class CurveForce final : public ActiveEffect {
     }
   }
 
+  bool FollowsItsJoint() const noexcept override { return of_ == joint_.dof; }
   void Push(const mjModel&, mjData& data) noexcept override {
     const CurveAxis::Weights weights = axis_.At(Variable(data));
     double force = 0.0;

@@ -27,6 +27,8 @@ TEST(TickColumns, AreTheDerivativesOfARunWithKeptGains) {
   // difference, of which tangents that are 10 ms old miss a part.
   for (const auto& [effect, share] :
        {std::pair("viscous_friction@elbow:coefficient=1e-3", 0.02),
+        std::pair("cubic_stiffness@elbow:coefficient=1e-3", 0.02),
+        std::pair("presliding_hysteresis@shoulder:force=1e-3,stiffness=0.01", 0.02),
         std::pair("added_mass@elbow:mass=1e-4", 0.02),
         std::pair("encoder_scale@encoder2:factor=1.0001", 0.15)}) {
     const Machine other = arm.machine.With(test::With({effect}));

@@ -131,6 +131,25 @@ TEST(Machine, HasTheEncoderNoiseOfItsEffectsBesideItsOwn) {
   EXPECT_EQ(measured.channels().Sensor("z").noise_sd, 6e-8);
 }
 
+// What the plant itself has of an effect, what reads and what drives is another machine.
+TEST(Machine, DiffersInPushesByWhatPushesAtJointsAlone) {
+  const Machine bonder = test::Bonder();
+  const auto with = [&](const char* effect) {
+    return bonder.With(test::With({effect}));
+  };
+  const Machine stiff = with("cubic_stiffness@X:coefficient=1e6");
+  EXPECT_TRUE(bonder.DiffersInPushes(bonder));
+  EXPECT_TRUE(bonder.DiffersInPushes(stiff));
+  EXPECT_TRUE(stiff.DiffersInPushes(with("cubic_stiffness@X:coefficient=2e6")));
+  for (const char* effect :
+       {"viscous_friction@X:coefficient=1", "coulomb_friction@X:force=1",
+        "added_mass@X:mass=0.1", "encoder_scale@x_encoder:factor=1.001",
+        "flexible_mode@X:mass=0.1,frequency=100,damping_ratio=0.01"}) {
+    EXPECT_FALSE(bonder.DiffersInPushes(with(effect))) << effect;
+  }
+  EXPECT_FALSE(bonder.DiffersInPushes(bonder.WithSubsteps(2)));
+}
+
 TEST(Machine, WithAnotherSetupHasTheSamePlantAndChanges) {
   const Machine worn = test::Bonder().With({{{"zeta_x", 1.2}}, {}});
   mjdiag::Setup setup = worn.setup();
