@@ -1,9 +1,11 @@
 #include "mjdiag/discovery/comparison/comparison.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mjdiag/discovery/comparison/noise_floor.h"
+#include "mjdiag/plugin/replay/force_smoother.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
@@ -118,6 +120,23 @@ bool CanBeFollowed(const Setup& setup, const Record& measured) {
          std::ranges::all_of(setup.channels.actuators, has);
 }
 
+/// Standard deviation of what every sensor reads less its prediction over a tick, whatever
+/// it read: no reading is cut. What is cut leaves more that is not known, without end where
+/// a machine falls.
+VectorXd ExpectedInnovations(const FilterPath& path, const FilterNoise& noise) {
+  const Eigen::MatrixXd uncut = Eigen::MatrixXd::Ones(path.sensors(), path.samples());
+  VectorXd logarithm = VectorXd::Zero(path.sensors());
+  VectorXd taken = VectorXd::Zero(path.sensors());
+  LinearPass pass(path, noise);
+  pass.inflation = &uncut;
+  pass.at_reading = [&](Eigen::Index sensor, Eigen::Index, bool, double) {
+    logarithm[sensor] += 0.5 * std::log(pass.kalman.variance);
+    taken[sensor] += 1.0;
+  };
+  pass.Over(0, path.samples());
+  return (logarithm.array() / taken.array().max(1.0)).exp();
+}
+
 /// What is predicted over one tick.
 void PredictATick(const Machine& machine, const Record& measured,
                   const FilterPath& path, Comparison& result) {
@@ -129,7 +148,7 @@ void PredictATick(const Machine& machine, const Record& measured,
   FilterNoise noise = path.noise;
   noise.size *= 1e-9;
   noise.white *= 1e-9;
-  const VectorXd floors = Score(path, noise, 0, path.samples()).variance.cwiseSqrt();
+  const VectorXd floors = ExpectedInnovations(path, noise);
   const auto samples = static_cast<double>(measured.samples());
   Eigen::Index row = 0;
   for (const SensorSetup& sensor : machine.channels().sensors) {
@@ -190,14 +209,15 @@ namespace {
 
 /// The free simulation, without its channels if the machine falls in it; the error that it
 /// ended with, if any.
-std::optional<NumericalError> SimulateFreely(const Machine& machine,
-                                             const Record& measured,
-                                             const RunOptions& options,
-                                             const std::vector<std::string>& names,
-                                             bool may_leave, Comparison& result) {
+/// @param start  none: at rest where the first sample is
+std::optional<NumericalError> SimulateFreely(
+    const Machine& machine, const Record& measured, const RunOptions& options,
+    const std::vector<std::string>& names, bool may_leave,
+    const std::optional<PlantState>& start, Comparison& result) {
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
-  const Excitation excitation = Replay(noisy.setup(), measured);
+  Excitation excitation = Replay(noisy.setup(), measured);
+  excitation.state = start;
   RunOptions without_noise = options;
   without_noise.noise_scale = 0.0;
   Record simulated;
@@ -221,18 +241,24 @@ Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const bool can_be_followed = CanBeFollowed(machine.setup(), measured);
-  const auto error =
-      SimulateFreely(machine, measured, options, names, !can_be_followed, result);
-  if (!can_be_followed) {
+  if (!CanBeFollowed(machine.setup(), measured)) {
+    const auto error =
+        SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
     if (error) throw *error;
     return result;
   }
   const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
   const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
+  const SmoothedForces smoothed = SmoothForces(path);
+  // A record may begin in motion, and its first sample is as noisy as any other.
+  std::optional<PlantState> start;
+  if (!result.closed_loop && smoothed.start.allFinite()) {
+    start = Moved(machine.plant(), path.starts.front().state, smoothed.start.col(0));
+  }
+  SimulateFreely(machine, measured, options, names, false, start, result);
   result.deviance = path.deviance;
   result.prediction = Predict(machine, run, path, result.options.skip_samples);
-  result.missing_force = DisturbanceEstimates(machine, path);
+  result.missing_force = DisturbanceEstimates(machine, path, smoothed);
   if (result.falls) PredictATick(machine, measured, path, result);
   return result;
 }
@@ -241,7 +267,8 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
                        const RunOptions& options) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const auto error = SimulateFreely(machine, measured, options, names, true, result);
+  const auto error =
+      SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
   if (error) throw *error;
   return result;
 }
