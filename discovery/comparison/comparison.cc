@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjdiag/discovery/comparison/noise_floor.h"
+#include "mjdiag/plugin/plant/start_state.h"
 #include "mjdiag/plugin/replay/force_smoother.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
@@ -207,23 +209,68 @@ const ChannelMismatch* Comparison::Worst() const {
 
 namespace {
 
-/// The free simulation, without its channels if the machine falls in it; the error that it
-/// ended with, if any.
-/// @param start  none: at rest where the first sample is
+/// Where a free simulation may begin: at rest where the first sample is; in open loop also
+/// at rest and in motion where all readings say that the machine was, for the first sample is
+/// as noisy as any other, and a record may begin in mid-motion.
+std::vector<Excitation> StartsOf(const Machine& noisy, const Record& measured,
+                                 const std::optional<PlantState>& smoothed) {
+  std::vector<Excitation> starts{Replay(noisy.setup(), measured)};
+  if (!smoothed) return starts;
+  Excitation still = starts.front();
+  const VectorXd readings =
+      SensorReadings(noisy.channels(), noisy.plant(), smoothed->position);
+  for (std::size_t i = 0; i < noisy.channels().sensors.size(); ++i) {
+    const auto start = still.start.find(noisy.channels().sensors[i].channel);
+    if (start == still.start.end()) continue;
+    start->second = readings[static_cast<Eigen::Index>(i)];
+  }
+  Excitation moving = starts.front();
+  moving.state = smoothed;
+  starts.push_back(std::move(still));
+  starts.push_back(std::move(moving));
+  return starts;
+}
+
+/// Mean squares of what the sensors miss, each in its noise.
+double Missed(const Record& measured, const Record& simulated, const Machine& noisy) {
+  double sum = 0.0;
+  for (const SensorSetup& sensor : noisy.channels().sensors) {
+    const Channel* channel = measured.Find(sensor.channel);
+    if (channel == nullptr) continue;
+    const VectorXd off = MismatchOf(*channel, simulated.At(sensor.channel), 0);
+    sum += off.squaredNorm() / std::max(1e-300, std::pow(sensor.noise_sd, 2));
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+/// The free simulation from where it stays nearest, without its channels if the machine falls
+/// in it; the error that it ended with, if any.
+/// @param smoothed  where all readings say that the machine was; none: not asked
 std::optional<NumericalError> SimulateFreely(
     const Machine& machine, const Record& measured, const RunOptions& options,
     const std::vector<std::string>& names, bool may_leave,
-    const std::optional<PlantState>& start, Comparison& result) {
+    const std::optional<PlantState>& smoothed, Comparison& result) {
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
-  Excitation excitation = Replay(noisy.setup(), measured);
-  excitation.state = start;
   RunOptions without_noise = options;
   without_noise.noise_scale = 0.0;
+  std::optional<NumericalError> error;
+  std::optional<Excitation> excitation;
   Record simulated;
-  try {
-    simulated = Simulate(noisy, excitation, without_noise);
-  } catch (const NumericalError& error) {
+  double least = 0.0;
+  for (Excitation& start : StartsOf(noisy, measured, smoothed)) {
+    try {
+      Record run = Simulate(noisy, start, without_noise);
+      const double missed = smoothed ? Missed(measured, run, noisy) : 0.0;
+      if (excitation && missed >= least) continue;
+      least = missed;
+      simulated = std::move(run);
+      excitation = std::move(start);
+    } catch (const NumericalError& diverged) {
+      error = diverged;
+    }
+  }
+  if (!excitation) {
     result.falls = true;
     return error;
   }
@@ -231,7 +278,7 @@ std::optional<NumericalError> SimulateFreely(
     result.falls = true;
     return std::nullopt;
   }
-  CompareChannels(noisy, measured, simulated, excitation, names, options, result);
+  CompareChannels(noisy, measured, simulated, *excitation, names, options, result);
   return std::nullopt;
 }
 
@@ -250,7 +297,6 @@ Comparison Compare(const Machine& machine, const Record& measured,
   const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
   const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
   const SmoothedForces smoothed = SmoothForces(path);
-  // A record may begin in motion, and its first sample is as noisy as any other.
   std::optional<PlantState> start;
   if (!result.closed_loop && smoothed.start.allFinite()) {
     start = Moved(machine.plant(), path.starts.front().state, smoothed.start.col(0));
