@@ -58,9 +58,11 @@ std::string Dominant(const MechanicalModel& model, const Mode& mode) {
 }
 
 std::string ModeTable(const MechanicalModel& model) {
+  const std::vector<Mode> modes = Modes(model);
+  if (modes.empty()) return "no modes: nothing pulls it back or damps it\n";
   Table table({"mode", "frequency", "damping ratio", "moves most"});
   int number = 0;
-  for (const Mode& mode : Modes(model)) {
+  for (const Mode& mode : modes) {
     table.Add({std::to_string(++number), FormatQuantity(mode.frequency, "Hz"),
                Short(mode.damping_ratio), Dominant(model, mode)});
   }

@@ -174,6 +174,16 @@ void RequireWritable(const std::filesystem::path& file, const Channel& channel) 
   }
 }
 
+/// A header has tabs and ends of lines among its control characters, and no others, in
+/// whatever encoding; they would be printed as names of columns.
+bool BeginsInBinary(std::string_view text) {
+  constexpr std::size_t kHeader = 1024;
+  return std::ranges::any_of(text.substr(0, kHeader), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == 0x7f || (byte < 0x20 && (byte < '\t' || byte > '\r'));
+  });
+}
+
 }  // namespace
 
 std::unique_ptr<RecordSource> OpenRecordSource(const std::filesystem::path& file) {
@@ -184,7 +194,7 @@ std::unique_ptr<RecordSource> OpenRecordSource(const std::filesystem::path& file
   }
   std::string text = ReadTextFile(file);
   RefuseForeignFormat(file, text);
-  if (text.find('\0') != std::string::npos) {
+  if (text.find('\0') != std::string::npos || BeginsInBinary(text)) {
     throw InputError(file.string(), "unknown format",
                      "CSV, JSON, HDF5 or MAT version 5 or 7.3");
   }

@@ -71,7 +71,7 @@ std::vector<Mode> Modes(const MechanicalModel& model) {
         (to_joints.cast<std::complex<double>>() * eigen.vectors.col(i).head(nq))
             .cwiseAbs();
     modes.push_back({std::abs(pole) / (2.0 * std::numbers::pi * time_unit),
-                     -pole.real() / std::abs(pole), shape / shape.maxCoeff()});
+                     (0.0 - pole.real()) / std::abs(pole), shape / shape.maxCoeff()});
   }
   std::sort(modes.begin(), modes.end(),
             [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });

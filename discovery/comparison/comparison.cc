@@ -1,9 +1,13 @@
 #include "mjdiag/discovery/comparison/comparison.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mjdiag/discovery/comparison/noise_floor.h"
+#include "mjdiag/plugin/plant/start_state.h"
+#include "mjdiag/plugin/replay/force_smoother.h"
 #include "mjdiag/plugin/replay/linear_pass.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/tracking.h"
@@ -119,6 +123,23 @@ bool CanBeFollowed(const Setup& setup, const Record& measured) {
          std::ranges::all_of(setup.channels.actuators, has);
 }
 
+/// Standard deviation of what every sensor reads less its prediction over a tick, whatever
+/// it read: no reading is cut. What is cut leaves more that is not known, without end where
+/// a machine falls.
+VectorXd ExpectedInnovations(const FilterPath& path, const FilterNoise& noise) {
+  const Eigen::MatrixXd uncut = Eigen::MatrixXd::Ones(path.sensors(), path.samples());
+  VectorXd logarithm = VectorXd::Zero(path.sensors());
+  VectorXd taken = VectorXd::Zero(path.sensors());
+  LinearPass pass(path, noise);
+  pass.inflation = &uncut;
+  pass.at_reading = [&](Eigen::Index sensor, Eigen::Index, bool, double) {
+    logarithm[sensor] += 0.5 * std::log(pass.kalman.variance);
+    taken[sensor] += 1.0;
+  };
+  pass.Over(0, path.samples());
+  return (logarithm.array() / taken.array().max(1.0)).exp();
+}
+
 /// What is predicted over one tick.
 void PredictATick(const Machine& machine, const Record& measured,
                   const FilterPath& path, Comparison& result) {
@@ -130,7 +151,7 @@ void PredictATick(const Machine& machine, const Record& measured,
   FilterNoise noise = path.noise;
   noise.size *= 1e-9;
   noise.white *= 1e-9;
-  const VectorXd floors = Score(path, noise, 0, path.samples()).variance.cwiseSqrt();
+  const VectorXd floors = ExpectedInnovations(path, noise);
   const auto samples = static_cast<double>(measured.samples());
   Eigen::Index row = 0;
   for (const SensorSetup& sensor : machine.channels().sensors) {
@@ -189,22 +210,68 @@ const ChannelMismatch* Comparison::Worst() const {
 
 namespace {
 
-/// The free simulation, without its channels if the machine falls in it; the error that it
-/// ended with, if any.
-std::optional<NumericalError> SimulateFreely(const Machine& machine,
-                                             const Record& measured,
-                                             const RunOptions& options,
-                                             const std::vector<std::string>& names,
-                                             bool may_leave, Comparison& result) {
+/// Where a free simulation may begin: at rest where the first sample is; in open loop also
+/// at rest and in motion where all readings say that the machine was, for the first sample is
+/// as noisy as any other, and a record may begin in mid-motion.
+std::vector<Excitation> StartsOf(const Machine& noisy, const Record& measured,
+                                 const std::optional<PlantState>& smoothed) {
+  std::vector<Excitation> starts{Replay(noisy.setup(), measured)};
+  if (!smoothed) return starts;
+  Excitation still = starts.front();
+  const VectorXd readings =
+      SensorReadings(noisy.channels(), noisy.plant(), smoothed->position);
+  for (std::size_t i = 0; i < noisy.channels().sensors.size(); ++i) {
+    const auto start = still.start.find(noisy.channels().sensors[i].channel);
+    if (start == still.start.end()) continue;
+    start->second = readings[static_cast<Eigen::Index>(i)];
+  }
+  Excitation moving = starts.front();
+  moving.state = smoothed;
+  starts.push_back(std::move(still));
+  starts.push_back(std::move(moving));
+  return starts;
+}
+
+/// Mean squares of what the sensors miss, each in its noise.
+double Missed(const Record& measured, const Record& simulated, const Machine& noisy) {
+  double sum = 0.0;
+  for (const SensorSetup& sensor : noisy.channels().sensors) {
+    const Channel* channel = measured.Find(sensor.channel);
+    if (channel == nullptr) continue;
+    const VectorXd off = MismatchOf(*channel, simulated.At(sensor.channel), 0);
+    sum += off.squaredNorm() / std::max(1e-300, std::pow(sensor.noise_sd, 2));
+  }
+  return std::isfinite(sum) ? sum : std::numeric_limits<double>::infinity();
+}
+
+/// The free simulation from where it stays nearest, without its channels if the machine falls
+/// in it; the error that it ended with, if any.
+/// @param smoothed  where all readings say that the machine was; none: not asked
+std::optional<NumericalError> SimulateFreely(
+    const Machine& machine, const Record& measured, const RunOptions& options,
+    const std::vector<std::string>& names, bool may_leave,
+    const std::optional<PlantState>& smoothed, Comparison& result) {
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
-  const Excitation excitation = Replay(noisy.setup(), measured);
   RunOptions without_noise = options;
   without_noise.noise_scale = 0.0;
+  std::optional<NumericalError> error;
+  std::optional<Excitation> excitation;
   Record simulated;
-  try {
-    simulated = Simulate(noisy, excitation, without_noise);
-  } catch (const NumericalError& error) {
+  double least = 0.0;
+  for (Excitation& start : StartsOf(noisy, measured, smoothed)) {
+    try {
+      Record run = Simulate(noisy, start, without_noise);
+      const double missed = smoothed ? Missed(measured, run, noisy) : 0.0;
+      if (excitation && missed >= least) continue;
+      least = missed;
+      simulated = std::move(run);
+      excitation = std::move(start);
+    } catch (const NumericalError& diverged) {
+      error = diverged;
+    }
+  }
+  if (!excitation) {
     result.falls = true;
     return error;
   }
@@ -212,7 +279,7 @@ std::optional<NumericalError> SimulateFreely(const Machine& machine,
     result.falls = true;
     return std::nullopt;
   }
-  CompareChannels(noisy, measured, simulated, excitation, names, options, result);
+  CompareChannels(noisy, measured, simulated, *excitation, names, options, result);
   return std::nullopt;
 }
 
@@ -222,18 +289,23 @@ Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const bool can_be_followed = CanBeFollowed(machine.setup(), measured);
-  const auto error =
-      SimulateFreely(machine, measured, options, names, !can_be_followed, result);
-  if (!can_be_followed) {
+  if (!CanBeFollowed(machine.setup(), measured)) {
+    const auto error =
+        SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
     if (error) throw *error;
     return result;
   }
   const MeasuredRun run = ToMeasuredRun(machine.setup(), measured);
   const FilterPath path = FilterLikeliest(machine, run, NoiseOf(machine, measured));
+  const SmoothedForces smoothed = SmoothForces(path);
+  std::optional<PlantState> start;
+  if (!result.closed_loop && smoothed.start.allFinite()) {
+    start = Moved(machine.plant(), path.starts.front().state, smoothed.start.col(0));
+  }
+  SimulateFreely(machine, measured, options, names, false, start, result);
   result.deviance = path.deviance;
   result.prediction = Predict(machine, run, path, result.options.skip_samples);
-  result.missing_force = DisturbanceEstimates(machine, path);
+  result.missing_force = DisturbanceEstimates(machine, path, smoothed);
   if (result.falls) PredictATick(machine, measured, path, result);
   return result;
 }
@@ -242,7 +314,8 @@ Comparison CompareFree(const Machine& machine, const Record& measured,
                        const RunOptions& options) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const auto error = SimulateFreely(machine, measured, options, names, true, result);
+  const auto error =
+      SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
   if (error) throw *error;
   return result;
 }

@@ -2,7 +2,6 @@
 
 #include "mjdiag/discovery/comparison/mismatch.h"
 #include "mjdiag/plugin/plant/tangent_coordinates.h"
-#include "mjdiag/plugin/replay/force_smoother.h"
 
 namespace mjdiag {
 
@@ -11,7 +10,12 @@ using Eigen::VectorXd;
 
 std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
                                                       const FilterPath& path) {
-  const SmoothedForces smoothed = SmoothForces(path);
+  return DisturbanceEstimates(machine, path, SmoothForces(path));
+}
+
+std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
+                                                      const FilterPath& path,
+                                                      const SmoothedForces& smoothed) {
   const std::vector<std::string> names = CoordinateNames(machine.plant());
   std::vector<DisturbanceEstimate> forces;
   for (std::size_t j = 0; j < path.dofs.size(); ++j) {

@@ -9,6 +9,7 @@
 
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/replay/force_filter.h"
+#include "mjdiag/plugin/replay/force_smoother.h"
 #include "mjdiag/plugin/replay/tracking.h"
 
 namespace mjdiag {
@@ -24,5 +25,9 @@ struct DisturbanceEstimate {
 
 std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
                                                       const FilterPath& path);
+/// @param smoothed  along that path
+std::vector<DisturbanceEstimate> DisturbanceEstimates(const Machine& machine,
+                                                      const FilterPath& path,
+                                                      const SmoothedForces& smoothed);
 
 }  // namespace mjdiag

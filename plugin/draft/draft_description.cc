@@ -185,7 +185,18 @@ class Description {
     return Listed(names) + " and " + more + " more";
   }
 
-  static std::string WhyUnused(const ColumnWords& column) {
+  /// A sensor of several numbers that is called as the column is.
+  bool IsOneOfAVector(const std::string& name) const {
+    return std::ranges::any_of(matched_.readings, [&](const Reading& reading) {
+      return reading.component > 0 && reading.element == name;
+    });
+  }
+
+  std::string WhyUnused(const ColumnWords& column) const {
+    if (IsOneOfAVector(column.name)) {
+      return "which number of its sensor is not said: name it '" + column.name +
+             "_x', _y or _z";
+    }
     if (column.switches) {
       return "says when a motor is on, if actuators.<channel>.enabled_by names it";
     }

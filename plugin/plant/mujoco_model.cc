@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <mutex>
 #include <regex>
+#include <string>
+#include <system_error>
 #include <vector>
 
 #include "mjdiag/plugin/plant/newer_mjcf.h"
 #include "mjdiag/plugin/plant/scenery.h"
 #include "mjdiag/signals/error.h"
+#include "mjdiag/signals/listed.h"
 
 namespace mjdiag {
 namespace {
@@ -149,19 +153,35 @@ std::string ExpectedOf(const mjModel& model, mjtObj kind) {
          "writes one";
 }
 
-std::string NamesOf(const mjModel& model, mjtObj kind) {
-  std::string names;
+/// Elements that a setup can name, and what to do about those that it cannot.
+std::string NamedOnes(const mjModel& model, mjtObj kind) {
+  std::vector<std::string> named;
+  std::vector<std::string> nameless;
   for (int id = 0; id < Count(model, kind); ++id) {
-    if (!names.empty()) names += ", ";
-    names += ElementName(model, kind, id);
+    const char* name = mj_id2name(&model, kind, id);
+    (name != nullptr && name[0] != '\0' ? named : nameless)
+        .push_back(ElementName(model, kind, id));
   }
-  return names;
+  std::string words = named.empty() ? "" : "one of " + Listed(named);
+  if (nameless.empty()) return words;
+  return words + (words.empty() ? "" : ", or ") + "a name in the MJCF for " +
+         Listed(nameless) + ": `mjdiag init` writes a copy with names";
 }
 
 }  // namespace
 
 ModelPtr LoadModel(const std::filesystem::path& mjcf) {
   InstallHandlers();
+  // Which MuJoCo says as an error of its parser.
+  std::error_code error;
+  const auto status = std::filesystem::status(mjcf, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(mjcf.string(), "cannot be opened (" + error.message() + ")",
+                     "an MJCF or URDF file");
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(mjcf.string(), "is a folder", "an MJCF or URDF file");
+  }
   std::array<char, 1024> report{};
   ModelPtr model(mj_loadXML(mjcf.c_str(), nullptr, report.data(), report.size()));
   if (!model) {
@@ -193,7 +213,7 @@ int FindElement(const mjModel& model, mjtObj kind, const std::string& name) {
     throw InputError(model.names, missing + ", and no " + sort + " at all",
                      ExpectedOf(model, kind));
   }
-  throw InputError(model.names, missing, "one of " + NamesOf(model, kind));
+  throw InputError(model.names, missing, NamedOnes(model, kind));
 }
 
 std::string ElementName(const mjModel& model, mjtObj kind, int id) {

@@ -31,6 +31,10 @@ class BackwardPass {
 
   /// @return sums of the variances of what lasts
   VectorXd Run();
+  /// Behind Run: where the record began, less where the path begins.
+  VectorXd Start(const VectorXd& sd) const {
+    return sd.cwiseAbs2().cwiseProduct(r_.head(sd.size()));
+  }
 
  private:
   void ThroughTick(Index k);
@@ -107,7 +111,9 @@ VectorXd BackwardPass::Run() {
 
 SmoothedForces SmoothForces(const FilterPath& path) {
   SmoothedForces smoothed{MatrixXd::Zero(path.dof_count(), path.samples()),
-                          VectorXd::Zero(path.dof_count())};
+                          VectorXd::Zero(path.dof_count()),
+                          MatrixXd::Zero(path.pulled.rows() - path.dof_count() - 1,
+                                         std::ssize(path.first))};
   const std::size_t records = path.first.size();
   std::vector<VectorXd> variances(records);
   ParallelFor(static_cast<int>(records), [&](int number) {
@@ -115,7 +121,9 @@ SmoothedForces SmoothForces(const FilterPath& path) {
     const Index first = path.first[r];
     const std::vector<FilterGains> gains =
         GainsAlong(path, path.noise, first, path.EndOf(r) - first);
-    variances[r] = BackwardPass(path, gains, first, smoothed).Run();
+    BackwardPass backward(path, gains, first, smoothed);
+    variances[r] = backward.Run();
+    smoothed.start.col(number) = backward.Start(path.starts[r].sd);
   });
   VectorXd variance = VectorXd::Zero(path.dof_count());
   for (const VectorXd& one : variances) variance += one;

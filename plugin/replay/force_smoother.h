@@ -19,6 +19,8 @@ namespace mjdiag {
 struct SmoothedForces {
   Eigen::MatrixXd value;  ///< what lasts and what is white, nf x samples [N, N m]
   Eigen::VectorXd sd;     ///< of the error of what lasts, mean square along the run
+  /// Where the records began, less where the path begins, ns x records.
+  Eigen::MatrixXd start;
 };
 
 SmoothedForces SmoothForces(const FilterPath& path);

@@ -279,13 +279,22 @@ LikelyNoise NoiseSearch::Downhill(const VectorXd& x, bool with_clock) const {
 
 LikelyNoise NoiseSearch::Descend(const FilterNoise& noise, bool is_far) const {
   const VectorXd x = LogarithmsOf(noise);
-  const VectorXd without = WithClock(x, lower_[clock()]);
-  LikelyNoise best = Downhill(is_far ? Hop(without) : without, false);
-  for (const double size : {x[clock()], upper_[clock()] + std::log(0.1)}) {
-    const Point with = Evaluate(WithClock(LogarithmsOf(best.noise), size), pieces_);
-    if (with.deviance() < best.deviance - kGain) best = Downhill(with.x, true);
+  const double before = Evaluate(x, pieces_).deviance();
+  LikelyNoise best;
+  constexpr double kShows = 0.1;  // logarithm above nothing
+  if (!is_far && x[clock()] > lower_[clock()] + kShows) {
+    // It shows already: without it the others would go far away to make up for it.
+    best = Downhill(x, true);
+  } else {
+    const VectorXd without = WithClock(x, lower_[clock()]);
+    best = Downhill(is_far ? Hop(without) : without, false);
+    for (const double size : {x[clock()], upper_[clock()] + std::log(0.1)}) {
+      const Point with = Evaluate(WithClock(LogarithmsOf(best.noise), size), pieces_);
+      if (with.deviance() < best.deviance - kGain) best = Downhill(with.x, true);
+    }
   }
-  best.gain = Evaluate(x, pieces_).deviance() - best.deviance;
+  if (!(best.deviance < before)) best = {noise, before, 0.0};
+  best.gain = before - best.deviance;
   return best;
 }
 

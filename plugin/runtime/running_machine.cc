@@ -52,8 +52,10 @@ class NonlinearRun final : public RunningMachine {
   NonlinearRun(const Machine& machine, const Excitation& excitation,
                const RunOptions& options)
       : rates_(machine.rates()),
-        plant_(StartPlant(machine, excitation.start)),
+        plant_(excitation.state ? StartPlant(machine, {})
+                                : StartPlant(machine, excitation.start)),
         instance_(machine, excitation, options) {
+    if (excitation.state) SetState(*plant_.model, *excitation.state, *plant_.data);
     Attach(*plant_.model, *plant_.data, instance_);
   }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "mjdiag/controllers/reconfiguration.h"
 #include "mjdiag/controllers/reference.h"
 #include "mjdiag/plugin/machine/machine.h"
+#include "mjdiag/plugin/machine/plant_state.h"
 #include "mjdiag/signals/record.h"
 
 namespace mjdiag {
@@ -32,6 +34,8 @@ struct Excitation {
   Record inputs;
   /// Sensor channel -> reading at rest before the first sample (left out: 0).
   std::map<std::string, double> start;
+  /// In its place: where the machine is then, and how it moves. Of the nonlinear plant.
+  std::optional<PlantState> state = {};
 
   Eigen::Index samples() const {
     return reference.axes.empty() ? inputs.samples() : reference.samples();

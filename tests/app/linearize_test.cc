@@ -111,6 +111,24 @@ TEST_F(LinearizeCommand, NamesWhatIsNoPlace) {
   }
 }
 
+// A rotor without a bearing that rubs: two poles at 0, and no oscillation.
+TEST_F(LinearizeCommand, SaysThatThereAreNoModes) {
+  std::string rotor = kLink;
+  rotor.replace(rotor.find("0 1 0\" damping=\"0.1\""), 20, "1 0 0\"");
+  Write(rotor);
+  EXPECT_NE(Run("").out.find("no modes: nothing pulls it back or damps it"),
+            std::string::npos);
+  EXPECT_TRUE(Document()["modes"].empty());
+}
+
+TEST_F(LinearizeCommand, SaysOfWhatSwingsUndampedThatItIsUndamped) {
+  std::string link = kLink;
+  link.replace(link.find(" damping=\"0.1\""), 14, "");
+  Write(link);
+  const json mode = Document()["modes"].at(0);
+  EXPECT_FALSE(std::signbit(mode["damping_ratio"].get<double>()));
+}
+
 TEST_F(LinearizeCommand, NamesIndependentCoordinatesOfTiedSlides) {
   Write(R"(<mujoco model="gantry"><option timestep="0.001" tolerance="1e-12"/>
     <worldbody>

@@ -216,6 +216,8 @@ TEST_F(CsvRecord, SaysWhereItIsWrong) {
   EXPECT_EQ(Error("time\n0\n1\n"),
             "r.csv: no channel besides the time; expected at least one");
   EXPECT_THAT(Error(std::string("\0\1\2", 3)), HasSubstr("unknown format"));
+  // Bytes that would go to the terminal as names of columns.
+  EXPECT_THAT(Error("\xb5,\x1b[2J\n1,2\n2,3\n"), HasSubstr("unknown format"));
 }
 
 TEST_F(CsvRecord, RefusesFilesWithNothingInThem) {

@@ -97,7 +97,7 @@ TEST(Comparison, RefusesAChannelInAnotherUnit) {
     measured.Add(channel);
   }
   EXPECT_THAT([&] { CompareToNominal(machine, measured); },
-              ThrowsMessage<InputError>(HasSubstr("unit V as in the setup")));
+              ThrowsMessage<InputError>(HasSubstr("in 'A'; expected V")));
 }
 
 }  // namespace

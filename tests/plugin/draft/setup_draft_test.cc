@@ -174,6 +174,19 @@ TEST_F(SetupDraftOf, ActuatorsThatNothingDrivesAreSaid) {
   EXPECT_THAT(draft.notes, Contains(HasSubstr("'hold': 0 all the time")));
 }
 
+TEST_F(SetupDraftOf, AColumnOfAVectorSaysNotWhichOfItsNumbers) {
+  const std::string sensors =
+      "<sensor><jointpos name=\"encoder\" joint=\"hinge\"/>"
+      "<framelinvel name=\"tip\" objtype=\"body\" objname=\"link\"/></sensor>";
+  const auto row = [](const SwungMoment& m) {
+    return Row(m.time, m.angle, m.torque, -0.2 * m.speed);
+  };
+  const SetupDraft draft =
+      Draft(Arm(kMotor + sensors), SwungLog("t,q [rad],tau [N m],tip [m/s]", row));
+  EXPECT_THAT(draft.unused, ElementsAre(HasSubstr("name it 'tip_x', _y or _z")));
+  EXPECT_EQ(draft.sensors.size(), 1u);
+}
+
 TEST_F(SetupDraftOf, NamesThatSayNothingAreAQuestion) {
   const SetupDraft draft =
       Draft(Arm(kMotor + kEncoder), SwungLog("t,foo,bar", InRadians));

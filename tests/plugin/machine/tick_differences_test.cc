@@ -132,21 +132,63 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryKind, ::testing::ValuesIn(test::kEveryKind
                            return name;
                          });
 
-// The exact linear map of a tick of several steps, at rest and without friction that
-// sticks.
-TEST(TickDifferences, AreTheExactTickOfTheLinearBonder) {
-  const Machine bonder(
-      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/ab383", {"physics.static_friction=false"}));
-  const mjModel& model = bonder.plant();
-  PlantState rest{bonder.rest(), VectorXd::Zero(model.nv), VectorXd(0)};
-  const TickTangent tangent = TangentAt(bonder, rest, 0.0);
+// What ships, without friction that sticks.
+class Shipped : public ::testing::TestWithParam<std::string> {
+ protected:
+  const Machine machine_{ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/" + GetParam(),
+                                   {"physics.static_friction=false"})};
+};
+
+class ShippedAtRest : public Shipped {};
+
+// The exact linear map of a tick of several steps, at rest. The servo's has the damping of its
+// motor, back EMF, at the end of a step, as that of joints; MuJoCo's Euler step at its beginning.
+TEST_P(ShippedAtRest, HasTheTangentOfItsLinearModel) {
+  const mjModel& model = machine_.plant();
+  const PlantState rest{machine_.rest(), VectorXd::Zero(model.nv), VectorXd(0)};
+  const TickTangent tangent = TangentAt(machine_, rest, 0.0);
   const StateSpace tick =
-      TickModel(bonder.linear(), bonder.rates().step(), bonder.rates().substeps);
-  // Coordinates of 1e8 N/m beside some of 1 N m/rad: differences of ticks carry the
-  // rounding of the largest.
+      TickModel(machine_.linear(), machine_.rates().step(), machine_.rates().substeps);
+  // The bonder has coordinates of 1e8 N/m beside some of 1 N m/rad: differences of ticks
+  // carry the rounding of the largest.
   EXPECT_LT(Relative(tangent.A, tick.A), 1e-6);
+  EXPECT_LT(Relative(tangent.B * machine_.linear().Gamma, tick.B), 1e-6);
   EXPECT_LT(Relative(tangent.C, tick.C), 1e-6);
 }
+
+TEST_P(Shipped, HasInMotionTheTangentOfMuJoCosOwnStep) {
+  const mjModel& model = machine_.plant();
+  PlantState state{machine_.rest(), VectorXd(model.nv), VectorXd(0)};
+  VectorXd dx = VectorXd::Zero(TangentSize(model));
+  // Guides of the bonder give by a micrometre.
+  for (Index i = 0; i < model.nv; ++i) {
+    const double give = model.jnt_stiffness[model.dof_jntid[i]] > 100.0 ? 1e-5 : 1.0;
+    dx[i] = give * (0.02 + 0.01 * static_cast<double>(i));
+    state.velocity[i] = give * (0.1 - 0.07 * static_cast<double>(i % 3));
+  }
+  state = Moved(model, state, dx);
+  TickMap map(machine_);
+  HeldInput control(0.4);
+  const VectorXd none = VectorXd::Zero(model.nv);
+  map.Run(state, none, 0, control);
+  TickDifferences differences(map, machine_.rates().tick(), AllDofs(model));
+  const TickTangent tangent = differences.OfFirstStep(state, none, 0, control);
+  const OfMuJoCo step = StepOfMuJoCo(model, state, 0.4);
+  EXPECT_LT(Relative(tangent.A, step.A), 1e-6);
+  MatrixXd C(tangent.C.rows(), tangent.C.cols());
+  for (Index i = 0; i < C.rows(); ++i) {
+    C.row(i) = step.C.row(machine_.sensor_addresses()[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_LT(Relative(tangent.C, C), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, ShippedAtRest,
+                         ::testing::Values("ab383", "emps", "panda", "voice_coil"),
+                         [](const auto& of) { return of.param; });
+INSTANTIATE_TEST_SUITE_P(Machines, Shipped,
+                         ::testing::Values("ab383", "emps", "panda", "servo",
+                                           "voice_coil"),
+                         [](const auto& of) { return of.param; });
 
 // Within 5 ms an arm at 0.1 rad/s turns by half a milliradian, by which springs, dampers and
 // inertia change little more.

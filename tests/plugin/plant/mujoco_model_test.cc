@@ -123,6 +123,37 @@ TEST(FindElement, FindsWhatIsThere) {
   EXPECT_EQ(ElementName(*model, mjOBJ_JOINT, joint), "u4");
 }
 
+TEST(LoadModel, SaysWhatIsNoFile) {
+  const test::TemporaryFolder folder;
+  const std::string missing = (folder.path() / "missing.xml").string();
+  EXPECT_EQ(MessageOf<InputError>([&] { LoadModel(missing); }),
+            missing +
+                ": cannot be opened (No such file or directory); expected an "
+                "MJCF or URDF file");
+  EXPECT_THAT(MessageOf<InputError>([&] { LoadModel(folder.path()); }),
+              HasSubstr("is a folder; expected an MJCF or URDF file"));
+}
+
+// "sensor 1" is what it is called in messages, and no name that a setup can give.
+TEST(FindElement, AsksForTheNamesThatAreMissing) {
+  const test::TemporaryFolder folder;
+  const std::string body = R"(<worldbody><body><joint name="j"/>
+    <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>)";
+  const ModelPtr all =
+      LoadModel(folder.Write("all.xml", "<mujoco>" + body +
+                                            "<sensor><jointpos joint=\"j\"/></sensor>"
+                                            "</mujoco>"));
+  EXPECT_THAT(MessageOf<InputError>([&] { FindElement(*all, mjOBJ_SENSOR, "q"); }),
+              HasSubstr("expected a name in the MJCF for sensor 0: `mjdiag init` "
+                        "writes a copy with names"));
+  const ModelPtr some = LoadModel(
+      folder.Write("some.xml", "<mujoco>" + body +
+                                   "<sensor><jointpos name=\"p\" joint=\"j\"/>"
+                                   "<jointvel joint=\"j\"/></sensor></mujoco>"));
+  EXPECT_THAT(MessageOf<InputError>([&] { FindElement(*some, mjOBJ_SENSOR, "q"); }),
+              HasSubstr("expected one of p, or a name in the MJCF for sensor 1: "));
+}
+
 TEST(FindElement, ListsWhatIsThere) {
   const ModelPtr model = LoadModel(kBonder);
   EXPECT_EQ(MessageOf<InputError>([&] { FindElement(*model, mjOBJ_SENSOR, "w"); }),
