@@ -148,6 +148,8 @@ TEST(Machine, DiffersInPushesByWhatPushesAtJointsAlone) {
     EXPECT_FALSE(bonder.DiffersInPushes(with(effect))) << effect;
   }
   EXPECT_FALSE(bonder.DiffersInPushes(bonder.WithSubsteps(2)));
+  const ModelParameter mass = FindModelParameter(bonder.plant(), "mass@x_stage");
+  EXPECT_FALSE(bonder.DiffersInPushes(bonder.WithNumbers({{mass, 1.1}})));
 }
 
 TEST(Machine, WithAnotherSetupHasTheSamePlantAndChanges) {
