@@ -102,7 +102,7 @@ void ExciteAxes(const Machine& machine, ExciteCommand& command) {
 }
 
 void Excite(ExciteCommand& command) {
-  RequireAsItIs(command.machine, "the setup that is written");
+  RequireUnchanged(command.machine, "the setup that is written");
   for (const std::string& text : command.limits)
     ReadLimits(text, command.design.limits);
   const Machine machine = LoadSubject(command.machine).nominal;

@@ -68,9 +68,9 @@ Hidden WeakMotor(const Machine& machine, CaseDice&) {
 Hidden LateDrive(const Machine& machine, CaseDice&) {
   Hidden hidden;
   const double late = 0.75 * machine.rates().tick();
-  hidden.physics.lateness =
+  hidden.physics.input_delay =
       VectorXd::Zero(static_cast<Index>(machine.channels().actuators.size()));
-  hidden.physics.lateness[ActuatorOf(machine, "u_y")] = late;
+  hidden.physics.input_delay[ActuatorOf(machine, "u_y")] = late;
   hidden.truth = {
       Listed("delay", {"Y"}, {"input_delay", "y_motor", {{"delay", late}}})};
   return hidden;
