@@ -27,8 +27,6 @@ TrueCause Listed(const std::string& kind, const std::vector<std::string>& places
   return cause;
 }
 
-Hidden Nothing(const Machine&, CaseDice&) { return {}; }
-
 TrueCause WeakenMotor(const Machine& machine, const std::string& axis, double factor,
                       HiddenPhysics& physics) {
   physics.drives.push_back([u = ActuatorOf(machine, "u_" + axis), factor](
