@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/blocks/candidate_regressors.h"
 #include "mjdiag/discovery/comparison/noise_floor.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"

@@ -55,7 +55,7 @@ struct Judged {
   test::Arm arm;
   Eigen::VectorXd sd = Eigen::VectorXd::Constant(2, test::Arm::kNoise);
   SplitRun run;
-  const Explained& explained;
+  Explained explained;
   AnswerData data;
   UnseenJudgement judgement;
 };
