@@ -112,7 +112,7 @@ nlohmann::json CalibrationDocument(const CalibrateCommand& command,
 }
 
 void RunCalibration(CalibrateCommand& command) {
-  RequireAsItIs(command.machine, "the calibrated setup");
+  RequireUnchanged(command.machine, "the calibrated setup");
   const fs::path setup_file = fs::absolute(FindSetupFile(command.machine.setup));
   const fs::path folder = command.output.folder;
   Setup setup = ReadSetup(command.machine.setup);

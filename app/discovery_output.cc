@@ -8,6 +8,7 @@
 #include "mjdiag/plugin/extension/setup_folder.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
+#include "mjdiag/report/mismatch_tables.h"
 
 namespace mjdiag::app {
 namespace {

@@ -1,6 +1,5 @@
 // mjdiag excite: a motion within the limits of the axes that tells most.
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -13,6 +12,7 @@
 #include "app/progress.h"
 #include "app/subject.h"
 #include "mjdiag/plugin/extension/setup_folder.h"
+#include "mjdiag/plugin/runtime/work_time.h"
 #include "mjdiag/report/excitation_json.h"
 #include "mjdiag/report/excitation_page.h"
 #include "mjdiag/signals/error.h"
@@ -102,7 +102,7 @@ void ExciteAxes(const Machine& machine, ExciteCommand& command) {
 }
 
 void Excite(ExciteCommand& command) {
-  RequireAsItIs(command.machine, "the setup that is written");
+  RequireUnchanged(command.machine, "the setup that is written");
   for (const std::string& text : command.limits)
     ReadLimits(text, command.design.limits);
   const Machine machine = LoadSubject(command.machine).nominal;
@@ -116,11 +116,7 @@ void Excite(ExciteCommand& command) {
 }  // namespace
 
 std::function<bool()> StopOf(std::optional<double> budget) {
-  return [budget, begin = std::chrono::steady_clock::now()] {
-    const std::chrono::duration<double> taken =
-        std::chrono::steady_clock::now() - begin;
-    return Interrupt::IsWished() || (budget && taken.count() > *budget);
-  };
+  return [is_over = AfterWork(budget)] { return Interrupt::IsWished() || is_over(); };
 }
 
 void AddExcite(CLI::App& app) {
@@ -152,8 +148,9 @@ void AddExcite(CLI::App& app) {
   command->add_option("--name", options->design.name,
                       "Name of the trajectory, or of its file");
   command
-      ->add_option("--budget", options->budget,
-                   "Seconds after which no further motion is tried; all are without it")
+      ->add_option(
+          "--budget", options->budget,
+          "Seconds of work after which no further motion is tried; all are without it")
       ->check(Within(1e-3, 1e6));
   command->callback([options] { Excite(*options); });
 }

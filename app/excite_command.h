@@ -17,14 +17,14 @@ struct ExciteCommand {
   OutputOptions output;
   std::string record;
   std::vector<std::string> limits;  ///< as they were typed
-  std::optional<double> budget;     ///< [s]
+  std::optional<double> budget;     ///< of work [s]
   MotionDesignOptions design;
 };
 
 inline constexpr const char* kStoppedText =
     "ended before everything was tried: by a signal, or by --budget\n";
 
-/// Whether the time is over, if there is a budget, or an end is wished.
+/// Whether the work's time is over, if there is a budget, or an end is wished.
 std::function<bool()> StopOf(std::optional<double> budget);
 
 /// Of a machine without controllers, beside a measured motion.

@@ -160,7 +160,7 @@ void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& wo
       });
 }
 
-void RequireAsItIs(const MachineOptions& options, const std::string& written) {
+void RequireUnchanged(const MachineOptions& options, const std::string& written) {
   if (options.overrides.empty() && options.faults.empty() && options.effects.empty()) {
     return;
   }

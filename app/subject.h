@@ -69,7 +69,7 @@ void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& wo
 
 /// For commands that write a setup from the one that is given. InputError where options
 /// change that. @param written  what they would not be in, "the calibrated setup"
-void RequireAsItIs(const MachineOptions& options, const std::string& written);
+void RequireUnchanged(const MachineOptions& options, const std::string& written);
 
 /// InputError on a fault or effect that the machine does not have.
 Subject LoadSubject(const MachineOptions& options);

@@ -15,13 +15,6 @@ double Significance(const FaultVerdict& fault) {
   return fault.deviation == 0.0 ? 0.0 : std::abs(fault.deviation) / fault.sd;
 }
 
-/// Of a fault parameter, which is near 1 more often than not: 1.01, not 1.0100.
-std::string ParameterText(double value) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.5g", value);
-  return digits.data();
-}
-
 /// Of a deviation: "2.1 %".
 std::string Percent(double deviation) {
   std::array<char, 32> digits{};
@@ -70,6 +63,12 @@ std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result) {
                      return Significance(a) > Significance(b);
                    });
   return faults;
+}
+
+std::string ParameterText(double value) {
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.5g", value);
+  return digits.data();
 }
 
 std::string DetectionText(const FaultVerdict& fault) {

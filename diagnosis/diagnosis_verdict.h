@@ -21,6 +21,9 @@ inline constexpr double kNamedSignificance = 0.05;
 /// Detected faults first, by falling significance; the others keep their order.
 std::vector<FaultVerdict> RankedFaults(const DiagnosisResult& result);
 
+/// Of a fault parameter, which is near 1 more often than not: 1.01, not 1.0100.
+std::string ParameterText(double value);
+
 /// "yes" or "no".
 std::string DetectionText(const FaultVerdict& fault);
 

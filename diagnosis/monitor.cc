@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// A transient that has decayed to this part is no longer seen.
-constexpr double kSettled = 1e-6;
+constexpr double kDecayed = 1e-6;
 /// A first reading within this many standard deviations is one at rest.
 constexpr double kSigmas = 6.0;
 /// Regressed samples after which standard deviations are looked at again.
@@ -71,7 +71,7 @@ DiagnosisMonitor::DiagnosisMonitor(const DiagnosisDesign& design, MatrixXd basel
                  MakeResidualNoise(design.bank.filters, design.bank.residuals,
                                    SignalNoise(design), design.decimation),
                  ForgettingFactor(design), true),
-      settling_away_(SettlingSamples(design.bank.filters, kSettled)),
+      settling_away_(SettlingSamples(design.bank.filters, kDecayed)),
       z_(VectorXd::Zero(design.bank.filters.inputs())),
       readings_(design.outputs.size()),
       residuals_(VectorXd::Zero(design.bank.residuals)),

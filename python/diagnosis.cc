@@ -85,18 +85,7 @@ std::string DiagnosisHtml(const DiagnosisObject& object) {
   const DiagnosisResult& result = object.diagnosis.result;
   Page page(result.setup);
   page.SetVerdict(result.detected ? Tone::kBad : Tone::kGood, DiagnosisVerdict(result));
-  Table table;
-  table.columns = {{"Fault"},
-                   {"Value", true},
-                   {"From healthy", true},
-                   {"Standard deviation", true},
-                   {"Detected"}};
-  for (const FaultVerdict& fault : RankedFaults(result)) {
-    table.rows.push_back({fault.name, Digits(fault.value),
-                          FormatNumber(fault.deviation), FormatNumber(fault.sd),
-                          DetectionText(fault)});
-  }
-  page.AddTable(table);
+  page.AddTable(FaultTable(result));
   for (const std::string& note : object.notes) page.AddParagraph(note);
   return NotebookHtml(page);
 }

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "mjdiag/plugin/runtime/work_time.h"
 #include "mjdiag/signals/error.h"
 #include "python/arrays.h"
 
@@ -69,11 +70,7 @@ std::function<void(double)> LongCall::Teller(std::string what) {
 }
 
 std::function<bool()> LongCall::StopAfter(std::optional<double> seconds) const {
-  return [this, seconds, begin = std::chrono::steady_clock::now()] {
-    const std::chrono::duration<double> taken =
-        std::chrono::steady_clock::now() - begin;
-    return IsStopped() || (seconds && taken.count() > *seconds);
-  };
+  return [this, is_over = AfterWork(seconds)] { return IsStopped() || is_over(); };
 }
 
 void LongCall::Tell(double fraction, const std::string& what) {

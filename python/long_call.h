@@ -29,7 +29,7 @@ class LongCall {
   void Tell(double fraction, const std::string& what);
   bool IsStopped() const { return stopped_; }
   /// For options that take a function: whether to end, by then or because that many
-  /// seconds, if there are any, are over. The call must outlive it.
+  /// seconds of work, if there are any, are over. The call must outlive it.
   std::function<bool()> StopAfter(std::optional<double> seconds) const;
 
  private:

@@ -79,8 +79,9 @@ void BindExcite(MachineClass& machine) {
               does: {"x": {"velocity": 0.3}}.
               max_frequency: of a tone [Hz]; None: a quarter of the control rate.
               name: of the trajectory.
-              budget: seconds after which no further motion is tried, None: all are; then,
-              and at Ctrl-C, the best motion so far is given (MotionDesign.stopped).
+              budget: seconds of work after which no further motion is tried, None: all
+              are; then, and at Ctrl-C, the best motion so far is given
+              (MotionDesign.stopped).
               progress: as of simulate.
 
               InputError: a machine without controllers or trajectory, names that there
@@ -99,8 +100,9 @@ void BindExcite(MachineClass& machine) {
               limits: joint -> dict of lowest, highest [m or rad], velocity, acceleration
               and force [N or N m], in the place of what the measured motion does.
               max_frequency: of the Fourier series [Hz]; None: what suits that motion.
-              budget: seconds after which no further motion is tried, None: all are; then,
-              and at Ctrl-C, the best motion so far is given (JointMotionDesign.stopped).
+              budget: seconds of work after which no further motion is tried, None: all
+              are; then, and at Ctrl-C, the best motion so far is given
+              (JointMotionDesign.stopped).
               progress: as of simulate.
 
               InputError: joints that there are not, limits that cannot be kept, a record

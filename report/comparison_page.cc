@@ -2,14 +2,13 @@
 
 #include <limits>
 
+#include "mjdiag/report/mismatch_tables.h"
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/listed.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
 namespace {
-
-std::string PercentText(double value) { return FormatNumber(value) + " %"; }
 
 std::string Seconds(double value) { return FormatNumber(value, 4); }
 

@@ -1,8 +1,5 @@
 #include "mjdiag/report/diagnosis_page.h"
 
-#include <array>
-#include <cstdio>
-
 #include "mjdiag/diagnosis/diagnosis_verdict.h"
 #include "mjdiag/report/diagnosis_plots.h"
 #include "mjdiag/report/page/page.h"
@@ -11,31 +8,8 @@
 namespace mjdiag {
 namespace {
 
-/// Of a fault parameter, which is near 1 more often than not: 1.01, not 1.0100.
-std::string ParameterText(double value) {
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.5g", value);
-  return digits.data();
-}
-
 std::string When(const std::optional<double>& time) {
   return time ? FormatQuantity(*time, "s") : "never";
-}
-
-void AddFaultTable(Page& page, const DiagnosisResult& result) {
-  page.AddHeading("Faults");
-  Table table;
-  table.columns = {{"Fault"},
-                   {"Value", true},
-                   {"From healthy", true},
-                   {"Standard deviation", true},
-                   {"Detected"}};
-  for (const FaultVerdict& fault : RankedFaults(result)) {
-    table.rows.push_back({fault.name, ParameterText(fault.value),
-                          FormatNumber(fault.deviation), FormatNumber(fault.sd),
-                          DetectionText(fault)});
-  }
-  page.AddTable(table);
 }
 
 void AddTones(Page& page, const DisturbanceReport& report) {
@@ -61,6 +35,21 @@ void AddEstimates(Page& page, const std::vector<TimePlot>& plots) {
 
 }  // namespace
 
+Table FaultTable(const DiagnosisResult& result) {
+  Table table;
+  table.columns = {{"Fault"},
+                   {"Value", true},
+                   {"From healthy", true},
+                   {"Standard deviation", true},
+                   {"Detected"}};
+  for (const FaultVerdict& fault : RankedFaults(result)) {
+    table.rows.push_back({fault.name, ParameterText(fault.value),
+                          FormatNumber(fault.deviation), FormatNumber(fault.sd),
+                          DetectionText(fault)});
+  }
+  return table;
+}
+
 Page DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
                    const MonitorLog& log, const RunDescription& run) {
   Page page("Diagnosis of " + result.setup);
@@ -72,7 +61,8 @@ Page DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
                  {"Residual left its thresholds", When(result.first_detection)},
                  {"Lasting", When(result.lasting)},
                  {"Noise over nominal", FormatNumber(result.disturbance.noise_ratio)}});
-  AddFaultTable(page, result);
+  page.AddHeading("Faults");
+  page.AddTable(FaultTable(result));
   page.AddHeading("Residual");
   page.AddParagraph(
       "In units of its own noise. A fault that lasts also lifts the mean magnitude, a "

@@ -11,6 +11,9 @@
 
 namespace mjdiag {
 
+/// A row for every fault parameter, strongest first.
+Table FaultTable(const DiagnosisResult& result);
+
 /// The whole page.
 Page DiagnosisPage(const DiagnosisDesign& design, const DiagnosisResult& result,
                    const MonitorLog& log, const RunDescription& run);

@@ -6,6 +6,7 @@
 #include "mjdiag/report/discovery_plots.h"
 #include "mjdiag/report/discovery_text.h"
 #include "mjdiag/report/kinds_text.h"
+#include "mjdiag/report/mismatch_tables.h"
 #include "mjdiag/report/page/page.h"
 #include "mjdiag/signals/quantity.h"
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <optional>
 
 #include "mjdiag/discovery/explanations.h"
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/report/cause_text.h"
 #include "mjdiag/report/kinds_text.h"
+#include "mjdiag/report/mismatch_tables.h"
 #include "mjdiag/signals/quantity.h"
 
 namespace mjdiag {
@@ -16,8 +17,6 @@ namespace {
 constexpr const char* kNone = "-";
 constexpr const char* kUnlisted = "a law that is in no list";
 constexpr double kConsidered = 0.05;
-
-std::string Percent(double percent) { return FormatNumber(percent) + " %"; }
 
 std::string Join(const std::vector<std::string>& items) {
   std::string text;
@@ -112,20 +111,20 @@ std::string BestAlternative(const FoundCause& found) {
       found.numbers.empty() ? nullptr : &found.numbers.front();
   for (const FoundCause::NumberInstead& one : found.numbers) others -= one.probability;
   if (number != nullptr && number->probability > std::max(likeliest, found.none)) {
-    return number->name + ", " + Percent(100.0 * number->probability);
+    return number->name + ", " + PercentText(100.0 * number->probability);
   }
   if (found.none >= kConsidered && found.none > likeliest) {
-    return "nothing, " + Percent(100.0 * found.none);
+    return "nothing, " + PercentText(100.0 * found.none);
   }
   if (others >= kConsidered && others > likeliest) {
-    return std::string(kUnlisted) + ", " + Percent(100.0 * others);
+    return std::string(kUnlisted) + ", " + PercentText(100.0 * others);
   }
   if (found.alternatives.empty()) return kNone;
   const Alternative& best = found.alternatives.front();
   if (best.indistinguishable) {
     return CauseName(best.cause) + ", alike";
   }
-  return CauseName(best.cause) + ", " + Percent(100.0 * best.probability);
+  return CauseName(best.cause) + ", " + PercentText(100.0 * best.probability);
 }
 
 /// Ten blocks for a probability of 1.
@@ -138,64 +137,7 @@ std::string Bar(double probability) {
   return bar;
 }
 
-using Errors = std::map<std::string, double>;
-
-std::string At(const Errors& values, const std::string& name,
-               const std::function<std::string(double)>& format) {
-  const auto found = values.find(name);
-  return found == values.end() ? kNone : format(found->second);
-}
-
-/// A column for every signal that any step has, one row a step.
-void AddErrors(Table& table, const std::vector<LadderStep>& ladder,
-               Errors LadderStep::*errors) {
-  std::set<std::string> names;
-  for (const LadderStep& step : ladder) {
-    for (const auto& [name, percent] : step.*errors) names.insert(name);
-  }
-  for (const std::string& name : names) {
-    table.columns.push_back({name, true});
-    for (std::size_t i = 0; i < ladder.size(); ++i) {
-      table.rows[i].push_back(At(ladder[i].*errors, name, Percent));
-    }
-  }
-}
-
-/// Channels in the order of the comparison, then those that only have figures.
-std::vector<std::string> ChannelsOf(const Discovery& discovery) {
-  std::vector<std::string> names;
-  if (discovery.Fitted() != nullptr) {
-    for (const ChannelMismatch& channel : discovery.Fitted()->before.channels) {
-      names.push_back(channel.name);
-    }
-  }
-  for (const auto& [name, floor] : discovery.noise_floor) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
-
-std::string FactorText(const FaultLimit& limit) {
-  const double factor = limit.before / limit.after;
-  return std::isfinite(factor) ? FormatNumber(factor) : kNone;
-}
-
 }  // namespace
-
-std::optional<double> TimesFloor(const Errors& rms, const Errors& floor) {
-  double sum = 0.0;
-  int channels = 0;
-  for (const auto& [name, value] : rms) {
-    const auto found = floor.find(name);
-    if (found == floor.end() || !(found->second > 0.0)) continue;
-    sum += value * value / (found->second * found->second);
-    ++channels;
-  }
-  if (channels == 0) return std::nullopt;
-  return std::sqrt(sum / channels);
-}
 
 std::string DiscoveryAnswer(const Discovery& discovery) {
   switch (discovery.verdict) {
@@ -246,7 +188,7 @@ Table CauseTable(const Discovery& discovery) {
                "",
                "",
                "",
-               Percent(100.0 * found.probability),
+               PercentText(100.0 * found.probability),
                BestAlternative(found)};
       }
       first = false;
@@ -267,7 +209,7 @@ Table ExplanationTable(const Discovery& discovery) {
   for (const CauseSet& explanation : explanations) {
     std::vector<std::string> causes;
     for (const Cause& cause : explanation.causes) causes.push_back(CauseName(cause));
-    table.rows.push_back({Percent(100.0 * explanation.probability),
+    table.rows.push_back({PercentText(100.0 * explanation.probability),
                           Bar(explanation.probability), Join(causes)});
   }
   return table;
@@ -287,7 +229,7 @@ Table CalibrationTable(const Discovery& discovery) {
         {number.name, (is_moved ? "moved by " : "") + ValueText(change),
          IntervalText(change),
          is_moved ? FormatQuantity(number.shift * number.doubt, number.shift_unit)
-                  : Percent(100.0 * number.doubt)});
+                  : PercentText(100.0 * number.doubt)});
   }
   return table;
 }
@@ -352,110 +294,22 @@ Table CandidateTable(const Discovery& discovery) {
     if (!found.HasName()) continue;  // nothing competes with it
     const std::string name = CauseName(found.cause);
     table.rows.push_back({name, name, Bar(found.probability),
-                          Percent(100.0 * found.probability), "found"});
+                          PercentText(100.0 * found.probability), "found"});
     for (const Alternative& alternative : found.alternatives) {
       table.rows.push_back(
           {"", CauseName(alternative.cause), Bar(alternative.probability),
-           Percent(100.0 * alternative.probability),
+           PercentText(100.0 * alternative.probability),
            alternative.indistinguishable ? "no measurement tells them apart" : ""});
     }
     for (const FoundCause::NumberInstead& one : found.numbers) {
       table.rows.push_back({"", one.name, Bar(one.probability),
-                            Percent(100.0 * one.probability), "a number of the plant"});
+                            PercentText(100.0 * one.probability),
+                            "a number of the plant"});
     }
     if (found.none >= kConsidered) {
       table.rows.push_back(
-          {"", "nothing", Bar(found.none), Percent(100.0 * found.none), ""});
+          {"", "nothing", Bar(found.none), PercentText(100.0 * found.none), ""});
     }
-  }
-  return table;
-}
-
-Table LadderTable(const Discovery& discovery) {
-  Table table;
-  table.columns = {
-      {"Added"}, {"Rest over noise, fitted", true}, {"Rest over noise, unseen", true}};
-  for (const LadderStep& step : discovery.ladder) {
-    table.rows.push_back(
-        {step.added, FormatNumber(step.train), FormatNumber(step.held_out)});
-  }
-  AddErrors(table, discovery.ladder, &LadderStep::error_percent);
-  return table;
-}
-
-Table ValidationLadderTable(const Discovery& discovery) {
-  Table table;
-  table.columns = {{"Added"}};
-  const auto& ladder = discovery.ladder;
-  if (std::all_of(ladder.begin(), ladder.end(), [](const LadderStep& step) {
-        return step.validation_percent.empty();
-      })) {
-    return table;
-  }
-  for (const LadderStep& step : ladder) table.rows.push_back({step.added});
-  AddErrors(table, ladder, &LadderStep::validation_percent);
-  return table;
-}
-
-Table MismatchTable(const Discovery& discovery) {
-  Table table;
-  table.columns = {{"Channel"},
-                   {"Noise floor", true},
-                   {"Fitted, before", true},
-                   {"after", true},
-                   {"Unseen, before", true},
-                   {"after", true},
-                   {"Times the floor", true}};
-  const Discovery::Figures& before = discovery.mismatch_before;
-  const Discovery::Figures& after = discovery.mismatch_after;
-  for (const std::string& name : ChannelsOf(discovery)) {
-    const auto found = discovery.unit.find(name);
-    const std::string unit = found == discovery.unit.end() ? "" : found->second;
-    const auto quantity = [&unit](double rms) { return FormatQuantity(rms, unit); };
-    const auto times = [&](double rms) {
-      const auto floor = discovery.noise_floor.find(name);
-      if (floor == discovery.noise_floor.end() || !(floor->second > 0.0))
-        return std::string(kNone);
-      return FormatNumber(rms / floor->second);
-    };
-    table.rows.push_back(
-        {name, At(discovery.noise_floor, name, quantity),
-         At(before.train, name, quantity), At(after.train, name, quantity),
-         At(before.validation, name, quantity), At(after.validation, name, quantity),
-         At(after.validation, name, times)});
-  }
-  return table;
-}
-
-Table RecordTable(const Discovery& discovery) {
-  Table table;
-  if (discovery.records.size() < 2) return table;
-  table.columns = {{"Record"},      {"Fitted"},
-                   {"Channel"},     {"Mean absolute, before", true},
-                   {"after", true}, {"Fit, before", true},
-                   {"after", true}};
-  for (const RecordReplay& replay : discovery.records) {
-    for (std::size_t i = 0; i < replay.before.channels.size(); ++i) {
-      const ChannelMismatch& before = replay.before.channels[i];
-      const ChannelMismatch& after = replay.after.channels[i];
-      table.rows.push_back({replay.name, replay.seen ? "yes" : "no", before.name,
-                            FormatQuantity(before.mae, before.unit),
-                            FormatQuantity(after.mae, after.unit),
-                            Percent(before.fit_percent), Percent(after.fit_percent)});
-    }
-  }
-  return table;
-}
-
-Table FaultLimitTable(const Discovery& discovery) {
-  Table table;
-  table.columns = {{"Fault"},
-                   {"Smallest seen, plant as given", true},
-                   {"extended plant", true},
-                   {"Times smaller", true}};
-  for (const FaultLimit& limit : discovery.fault_limits) {
-    table.rows.push_back({limit.fault, Percent(100.0 * limit.before),
-                          Percent(100.0 * limit.after), FactorText(limit)});
   }
   return table;
 }

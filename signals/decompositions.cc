@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -31,6 +32,10 @@ MatrixXd LeastSquares(const MatrixXd& A, const MatrixXd& B) {
   return Eigen::ColPivHouseholderQR<MatrixXd>(A).solve(B);
 }
 
+Eigen::VectorXd LeastSquaresOfOne(const MatrixXd& A, const Eigen::VectorXd& b) {
+  return Eigen::ColPivHouseholderQR<MatrixXd>(A).solve(b);
+}
+
 MatrixXd LeastNorm(const MatrixXd& A, const MatrixXd& B) {
   return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(B);
 }
@@ -46,6 +51,21 @@ MatrixXd OrthonormalColumns(const MatrixXd& A) {
 
 MatrixXd OrthonormalBasis(const MatrixXd& A) {
   return Eigen::HouseholderQR<MatrixXd>(A).householderQ();
+}
+
+MatrixXd OrthonormalRange(const MatrixXd& A) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+  return MatrixXd(qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols()))
+      .leftCols(qr.rank());
+}
+
+std::vector<Eigen::Index> IndependentColumns(const MatrixXd& A, double threshold) {
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+  qr.setThreshold(threshold);
+  const auto& order = qr.colsPermutation().indices();
+  std::vector<Eigen::Index> columns(order.data(), order.data() + qr.rank());
+  std::ranges::sort(columns);
+  return columns;
 }
 
 EigenPairs EigenDecomposition(const MatrixXd& A) {

@@ -3,6 +3,7 @@
 // once, not in every file that solves a system of equations.
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace mjdiag {
 
@@ -16,6 +17,9 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& A);
 /// X that minimises |A X - B| (QR, pivoting of columns).
 Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
+/// The same of one right side, by products of vectors: other last bits.
+Eigen::VectorXd LeastSquaresOfOne(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
 /// The smallest of the X that minimise |A X - B| (complete orthogonal decomposition).
 Eigen::MatrixXd LeastNorm(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
@@ -27,6 +31,15 @@ Eigen::MatrixXd OrthonormalColumns(const Eigen::MatrixXd& A);
 
 /// Q of A = Q R, square: its first columns span those of A, the others the rest.
 Eigen::MatrixXd OrthonormalBasis(const Eigen::MatrixXd& A);
+
+/// An orthonormal basis of what the columns of A span to within rounding (QR, pivoting of
+/// columns).
+Eigen::MatrixXd OrthonormalRange(const Eigen::MatrixXd& A);
+
+/// As many columns of A as span the others (QR, pivoting of columns), increasing.
+/// @param threshold  a pivot below so much of the largest is rounding
+std::vector<Eigen::Index> IndependentColumns(const Eigen::MatrixXd& A,
+                                             double threshold);
 
 struct EigenPairs {
   Eigen::VectorXcd values;

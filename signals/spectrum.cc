@@ -3,7 +3,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <numeric>
 #include <string>
 #include <unsupported/Eigen/FFT>
 
@@ -73,12 +72,6 @@ double BandPower(const Spectrum& spectrum, double low, double high) {
   const auto inside =
       spectrum.frequency.array() >= low && spectrum.frequency.array() <= high;
   return inside.select(spectrum.density.array(), 0.0).sum() * spectrum.resolution();
-}
-
-VectorXd CumulativePower(const Spectrum& spectrum) {
-  VectorXd power = spectrum.density * spectrum.resolution();
-  std::partial_sum(power.begin(), power.end(), power.begin());
-  return power;
 }
 
 std::vector<SpectralPeak> FindPeaks(const Spectrum& spectrum, double threshold) {

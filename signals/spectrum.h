@@ -41,9 +41,6 @@ Spectrum WelchDensity(const Eigen::VectorXd& signal, double sample_time,
 /// integral of [AB383], Eq. 30. [unit^2]
 double BandPower(const Spectrum& spectrum, double low, double high);
 
-/// The power up to each frequency. [unit^2]
-Eigen::VectorXd CumulativePower(const Spectrum& spectrum);
-
 struct SpectralPeak {
   double frequency = 0.0;  ///< [Hz]
   double density = 0.0;    ///< [unit^2/Hz]

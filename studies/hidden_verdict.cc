@@ -4,6 +4,7 @@
 #include <array>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
 namespace {

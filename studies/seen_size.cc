@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mjdiag/plugin/runtime/parallel.h"
+#include "mjdiag/studies/growing_table.h"
 
 namespace mjdiag {
 namespace {

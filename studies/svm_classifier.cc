@@ -350,11 +350,6 @@ double SvmClassifier::validation_accuracy() const {
 
 double Confusion::accuracy() const { return Part(counts.trace(), counts.sum()); }
 
-double Confusion::recall(int label) const {
-  const ClassCounts of_class = CountsOf(*this, label);
-  return Part(of_class.correct, of_class.total);
-}
-
 double Confusion::false_alarm_rate(int healthy) const {
   const ClassCounts of_class = CountsOf(*this, healthy);
   return Part(of_class.total - of_class.correct, of_class.total);

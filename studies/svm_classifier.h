@@ -75,8 +75,6 @@ struct Confusion {
   Eigen::MatrixXi counts;   ///< (i, j): vectors of class i predicted as class j
 
   double accuracy() const;
-  /// Part of the vectors of a class that is predicted as that class; NaN without any.
-  double recall(int label) const;
   /// Part of the healthy vectors predicted as a fault; NaN without healthy ones.
   double false_alarm_rate(int healthy) const;
   /// Part of the faulty vectors predicted as healthy; NaN without faulty ones.

@@ -8,6 +8,7 @@
 #include "mjdiag/discovery/blocks/candidate_regressors.h"
 #include "mjdiag/discovery/comparison/noise_floor.h"
 #include "mjdiag/discovery/hypotheses/fitted_cause.h"
+#include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/decompositions.h"
@@ -90,9 +91,9 @@ double OverdispersionBy(const VectorXd& left, Index channels, double sample_time
 /// A run beside the machine with numbers and a law that are such that it leaves least.
 class LeastLeft {
  public:
-  LeastLeft(const ObservedRuns& runs, const std::vector<ModelParameter>& doubted,
+  LeastLeft(const ObservedRuns& runs, const std::vector<ModelParameter>& uncertain,
             const MatrixXd& J, const MatrixXd& R, const MeasuredRun& run)
-      : runs_(runs), doubted_(doubted), J_(J), R_(R), run_(run) {}
+      : runs_(runs), uncertain_(uncertain), J_(J), R_(R), run_(run) {}
 
   /// @param law  none: numbers alone
   double Square(const Candidate* law, const VectorXd& values) {
@@ -137,7 +138,7 @@ class LeastLeft {
     // That inputs are late is first order only: no step of the model has it.
     for (Index i = 0; i + 1 < J_.cols(); ++i) {
       if (x[i] == 0.0) continue;
-      const ModelParameter& number = doubted_[static_cast<std::size_t>(i)];
+      const ModelParameter& number = uncertain_[static_cast<std::size_t>(i)];
       changes.numbers.emplace_back(number, std::exp(DoubtOf(plant, number) * x[i]));
     }
     const Index late = J_.cols() - 1;
@@ -218,7 +219,7 @@ class LeastLeft {
   }
 
   const ObservedRuns& runs_;
-  const std::vector<ModelParameter>& doubted_;
+  const std::vector<ModelParameter>& uncertain_;
   const MatrixXd& J_;
   const MatrixXd& R_;
   const MeasuredRun& run_;
@@ -232,11 +233,11 @@ class LeastLeft {
 
 VisibleSize::VisibleSize(const Machine& machine, int substeps, const Excitation& motion)
     : runs_(machine, motion),
-      doubted_(ModelParameters(machine.plant())),
-      numbers_(NumbersShown(runs_, doubted_)) {
+      uncertain_(ModelParameters(machine.plant())),
+      numbers_(NumbersShown(runs_, uncertain_)) {
   const MeasuredRun finer = runs_.RunOf(machine.WithSubsteps(substeps));
   const MatrixXd none = NoOthers();
-  LeastLeft least(runs_, doubted_, numbers_, none, finer);
+  LeastLeft least(runs_, uncertain_, numbers_, none, finer);
   least.Square(nullptr, VectorXd());
   inflation_ = OverdispersionBy(least.Left(), finer.outputs.rows(), finer.sample_time);
 }
@@ -252,14 +253,15 @@ VectorXd VisibleSize::Innovations(const Cause& cause) const {
 
 double VisibleSize::Shown(const Cause& cause, const MatrixXd& beside) const {
   const MeasuredRun run = runs_.RunOf(runs_.machine().With(ChangesOf({cause})));
-  return LeastLeft(runs_, doubted_, numbers_, beside, run).Square(nullptr, VectorXd()) /
+  return LeastLeft(runs_, uncertain_, numbers_, beside, run)
+             .Square(nullptr, VectorXd()) /
          inflation_;
 }
 
 double VisibleSize::LeftBeside(const MeasuredRun& run, const Candidate& law,
                                VectorXd values, const MatrixXd& others) const {
   try {
-    return LeastLeft(runs_, doubted_, numbers_, others, run).Square(&law, values) /
+    return LeastLeft(runs_, uncertain_, numbers_, others, run).Square(&law, values) /
            inflation_;
   } catch (const NumericalError&) {
     return kInfinity;
@@ -365,7 +367,7 @@ double VisibleSize::ShownBesideOtherLaws(const std::vector<Cause>& all,
   const MeasuredRun run = runs_.RunOf(runs_.machine().With(ChangesOf(all)));
   const auto law = BestLaw(runs_.Innovations(run), others, all[one]);
   if (!law) {
-    return LeastLeft(runs_, doubted_, numbers_, others, run)
+    return LeastLeft(runs_, uncertain_, numbers_, others, run)
                .Square(nullptr, VectorXd()) /
            inflation_;
   }

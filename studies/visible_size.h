@@ -74,7 +74,7 @@ class VisibleSize {
       const Candidate& law, const Eigen::VectorXd& innovations) const;
 
   ObservedRuns runs_;
-  std::vector<ModelParameter> doubted_;
+  std::vector<ModelParameter> uncertain_;
   Eigen::MatrixXd numbers_;  // J
   double inflation_ = 1.0;
 };

@@ -181,10 +181,4 @@ ResidualBank SynthesiseBank(const ResidualSpace& space, const MatrixXd& combinat
   return BankOf(Combine(combinations, space.relations), faults, options);
 }
 
-ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
-                      const std::vector<PerturbedModels>& faults,
-                      const SynthesisOptions& options) {
-  return BankOf(Nearest(reference, moved.relations, options), faults, options);
-}
-
 }  // namespace mjdiag

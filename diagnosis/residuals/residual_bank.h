@@ -79,12 +79,6 @@ ResidualBank SynthesiseBank(const ResidualSpace& space,
                             const std::vector<PerturbedModels>& faults,
                             const SynthesisOptions& options);
 
-/// The bank of a machine whose faults have moved it away from the point of design: its
-/// residuals are the relations of `moved` nearest to `reference`.
-ResidualBank MoveBank(const Numerators& reference, const ResidualSpace& moved,
-                      const std::vector<PerturbedModels>& faults,
-                      const SynthesisOptions& options);
-
 /// The bank of combinations * (the residuals of `bank`): prefilters are linear in the
 /// relations.
 ResidualBank Mix(const ResidualBank& bank, const Eigen::MatrixXd& combinations);

@@ -1,7 +1,8 @@
 #include "mjdiag/diagnosis/twin/moved_rest.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -18,13 +19,13 @@ MatrixXd WithLooseHeld(const MechanicalModel& model) {
   const VectorXd scale = model.M.diagonal().cwiseSqrt();
   const MatrixXd scaled =
       scale.cwiseInverse().asDiagonal() * model.K * scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(0.5 *
-                                                      (scaled + scaled.transpose()));
-  const double stiffest = modes.eigenvalues().cwiseAbs().maxCoeff();
+  const auto [values, vectors] =
+      SymmetricEigenDecomposition(0.5 * (scaled + scaled.transpose()));
+  const double stiffest = values.cwiseAbs().maxCoeff();
   MatrixXd held = model.K;
-  for (Index i = 0; i < modes.eigenvalues().size(); ++i) {
-    if (std::abs(modes.eigenvalues()[i]) > kLoose * stiffest) continue;
-    const VectorXd loose = scale.asDiagonal() * modes.eigenvectors().col(i);
+  for (Index i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i]) > kLoose * stiffest) continue;
+    const VectorXd loose = scale.asDiagonal() * vectors.col(i);
     held += (stiffest > 0.0 ? stiffest : 1.0) * loose * loose.transpose();
   }
   return held;

@@ -173,7 +173,7 @@ std::vector<Block> BlocksOf(const Machine& machine,
                             const std::vector<Candidate>& candidates,
                             const std::vector<ModelParameter>& numbers) {
   std::vector<Block> blocks;
-  std::vector<ModelParameter> stood_for;
+  std::vector<ModelParameter> aliased;
   for (const Candidate& candidate : candidates) {
     const std::string name = CandidateName(candidate);
     const auto number = NumberAt(*candidate.effect, machine.plant(), candidate.site);
@@ -208,10 +208,10 @@ std::vector<Block> BlocksOf(const Machine& machine,
         parameter.upper = std::min(parameter.upper, parameter.nothing + farthest);
       }
     }
-    if (number) stood_for.push_back(*number);
+    if (number) aliased.push_back(*number);
   }
   for (const ModelParameter& number : numbers) {
-    if (std::ranges::find(stood_for, number) != stood_for.end()) continue;
+    if (std::ranges::find(aliased, number) != aliased.end()) continue;
     const std::string name = ModelParameterName(machine.plant(), number);
     blocks.push_back({.name = name,
                       .candidate = std::nullopt,

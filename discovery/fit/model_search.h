@@ -53,9 +53,9 @@ class ModelSearch {
   void KeepRivals(const Moves& moves);
   /// What a rival is worth once it has been fitted. @param score  less that of the model
   void Rate(const Model& rival, double score);
-  std::optional<ConvergedModel> Resettled(const Whitenings& whitenings,
-                                          const Moves& moves,
-                                          const ModelFit& as_it_is) const;
+  std::optional<ConvergedModel> ConvergedAnew(const Whitenings& whitenings,
+                                              const Moves& moves,
+                                              const ModelFit& as_it_is) const;
   std::string Difference(double score) const {
     char text[40];
     std::snprintf(text, sizeof text, "%.1f", score - found_.score);

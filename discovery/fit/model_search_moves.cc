@@ -34,9 +34,8 @@ constexpr double kAsNear = 1e-3;
 
 /// The model as it is behind the noise that suits it by now; none if nothing is gained, or a
 /// tenth of what a move promises: it is settled then with that.
-std::optional<ConvergedModel> ModelSearch::Resettled(const Whitenings& whitenings,
-                                                     const Moves& moves,
-                                                     const ModelFit& as_it_is) const {
+std::optional<ConvergedModel> ModelSearch::ConvergedAnew(
+    const Whitenings& whitenings, const Moves& moves, const ModelFit& as_it_is) const {
   constexpr double kShare = 0.1;
   const double promised =
       moves.best.empty() ? 0.0 : moves.score - moves.best.front().score;
@@ -75,7 +74,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
   const Whitenings& whitenings = standing.whitenings;
   const ModelFit& own =
       IncumbentBehind({moves.noise, false}, whitenings, standing.as_fitted);
-  if (auto settled = Resettled(whitenings, moves, own)) {
+  if (auto settled = ConvergedAnew(whitenings, moves, own)) {
     return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
   Say(std::to_string(moves.variations) + " shapes, " +

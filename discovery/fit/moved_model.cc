@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace mjdiag {
 
@@ -21,15 +22,32 @@ Model After(const ModelMove& move, const Model& model) {
 
 namespace {
 
+using IsSo = std::function<bool(const Block&)>;
+
 /// The block of the same joint's friction that is so; none if it has none.
 std::optional<std::size_t> InPlaceOf(const std::vector<Block>& blocks,
-                                     const Block& block,
-                                     const std::function<bool(const Block&)>& is_so) {
+                                     const Block& block, const IsSo& is_so) {
   const auto found = std::ranges::find_if(blocks, [&](const Block& other) {
     return !block.group.empty() && other.group == block.group && is_so(other);
   });
   if (found == blocks.end()) return std::nullopt;
   return static_cast<std::size_t>(found - blocks.begin());
+}
+
+/// The members that are so in their joints' form that is as they shall be, where there is one.
+/// @param values  of a member in the block of that form; none: it stays
+Model InForm(const std::vector<Block>& blocks, Model model, const IsSo& are,
+             const IsSo& shall_be,
+             const std::function<std::optional<Eigen::VectorXd>(
+                 const Member&, const Block& form)>& values) {
+  for (Member& member : model) {
+    if (!are(blocks[member.block])) continue;
+    const auto form = InPlaceOf(blocks, blocks[member.block], shall_be);
+    if (!form) continue;
+    auto there = values(member, blocks[*form]);
+    if (there) member = {*form, *std::move(there)};
+  }
+  return model;
 }
 
 bool IsAbrupt(const Block& block) {
@@ -42,79 +60,62 @@ bool IsOfOneSize(const Block& block) {
          IsAbrupt(block);
 }
 
+/// The form knows the force alone.
+Eigen::VectorXd ForceOf(const Member& member, const Block&) {
+  return member.values.head(1);
+}
+
 }  // namespace
 
 Model Abrupt(const std::vector<Block>& blocks, Model model) {
-  for (Member& member : model) {
-    const Block& block = blocks[member.block];
-    if (!IsOfOneSize(block) || IsAbrupt(block)) continue;
-    const auto other = InPlaceOf(blocks, block, IsAbrupt);
-    if (other) member = {*other, member.values.head(1)};
-  }
-  return model;
+  const auto are = [](const Block& one) { return IsOfOneSize(one) && !IsAbrupt(one); };
+  return InForm(blocks, std::move(model), are, IsAbrupt, ForceOf);
 }
 
 Model Creeping(const std::vector<Block>& blocks, Model model) {
-  for (Member& member : model) {
-    const Block& block = blocks[member.block];
-    if (!block.candidate || !IsAbrupt(block)) continue;
-    const auto other = InPlaceOf(
-        blocks, block, [](const Block& one) { return one.IsSmoothFriction(); });
-    if (!other) continue;
+  const auto are = [](const Block& one) { return one.candidate && IsAbrupt(one); };
+  const auto values = [](const Member& member,
+                         const Block& form) -> std::optional<Eigen::VectorXd> {
     // A filter does not follow what turns round within its doubt of a velocity: it begins by
     // a wide step, which a fit makes as steep as it is.
     constexpr double kOfFastest = 0.1;
-    const double fastest = 0.5 * blocks[*other].candidate->parameters[1].upper;
-    if (!(fastest > 0.0)) continue;
-    member = {*other, Eigen::VectorXd{{member.values[0], kOfFastest * fastest}}};
-  }
-  return model;
+    const double fastest = 0.5 * form.candidate->parameters[1].upper;
+    if (!(fastest > 0.0)) return std::nullopt;
+    return Eigen::VectorXd{{member.values[0], kOfFastest * fastest}};
+  };
+  return InForm(blocks, std::move(model), are, &Block::IsSmoothFriction, values);
 }
 
 Model GivingWay(const std::vector<Block>& blocks, Model model) {
-  for (Member& member : model) {
-    const Block& block = blocks[member.block];
-    if (!IsOfOneSize(block) || block.GivesWay()) continue;
-    const auto other =
-        InPlaceOf(blocks, block, [](const Block& one) { return one.GivesWay(); });
-    if (other) member = {*other, member.values.head(1)};
-  }
-  return model;
+  const auto are = [](const Block& one) { return IsOfOneSize(one) && !one.GivesWay(); };
+  return InForm(blocks, std::move(model), are, &Block::GivesWay, ForceOf);
 }
 
 Model Springing(const std::vector<Block>& blocks, Model model,
                 const Eigen::VectorXd& lengths) {
-  for (Member& member : model) {
-    const Block& block = blocks[member.block];
-    if (!IsOfOneSize(block)) continue;
-    const auto other =
-        InPlaceOf(blocks, block, [](const Block& one) { return one.Springs(); });
-    const double length = lengths[block.candidate->joint];
-    if (!other || !(length > 0.0)) continue;
-    const FitParameter& stiffness = blocks[*other].candidate->parameters.back();
+  const auto values = [&](const Member& member,
+                          const Block& form) -> std::optional<Eigen::VectorXd> {
+    const double length = lengths[blocks[member.block].candidate->joint];
+    if (!(length > 0.0)) return std::nullopt;
     const double force = member.values[0];
-    member = {*other,
-              Eigen::VectorXd{{force, std::min(force / length, stiffness.upper)}}};
-  }
-  return model;
+    const double stiffest = form.candidate->parameters.back().upper;
+    return Eigen::VectorXd{{force, std::min(force / length, stiffest)}};
+  };
+  return InForm(blocks, std::move(model), IsOfOneSize, &Block::Springs, values);
 }
 
 Model BreakingAway(const std::vector<Block>& blocks, Model model,
                    const Eigen::VectorXd& speeds) {
   // What a law of one size says of one that has two is the larger.
   constexpr double kSlides = 2.0 / 3.0;
-  for (Member& member : model) {
-    const Block& block = blocks[member.block];
-    if (!IsOfOneSize(block)) continue;
-    const auto other =
-        InPlaceOf(blocks, block, [](const Block& one) { return one.BreaksAway(); });
-    const double speed = speeds[block.candidate->joint];
-    if (!other || !(speed > 0.0)) continue;
+  const auto values = [&](const Member& member,
+                          const Block&) -> std::optional<Eigen::VectorXd> {
+    const double speed = speeds[blocks[member.block].candidate->joint];
+    if (!(speed > 0.0)) return std::nullopt;
     const double force = member.values[0];
-    member = {*other,
-              Eigen::VectorXd{{kSlides * force, (1.0 - kSlides) * force, speed}}};
-  }
-  return model;
+    return Eigen::VectorXd{{kSlides * force, (1.0 - kSlides) * force, speed}};
+  };
+  return InForm(blocks, std::move(model), IsOfOneSize, &Block::BreaksAway, values);
 }
 
 namespace {

@@ -114,9 +114,9 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   std::vector<RunSamples> runs;
   for (const Record& record : records) runs.push_back(SamplesOf(machine, record));
   if (runs.empty()) throw InputError("calibration", "no record", "one or more");
-  const UncertaintyOptions doubted{
+  const UncertaintyOptions uncertain_numbers{
       .faults = false, .doubt = true, .friction = !options.linear};
-  const UncertainMachine uncertain = MakeUncertainMachine(machine, doubted);
+  const UncertainMachine uncertain = MakeUncertainMachine(machine, uncertain_numbers);
   if (uncertain.known == 0) {
     throw InputError("calibration of '" + machine.setup().name + "'",
                      "its plant has no number that may be unknown",
@@ -128,7 +128,8 @@ CalibrationReport Calibrate(const Machine& machine, const std::vector<Record>& r
   VectorXd noise = FirstNoise(machine, runs);
   // The machine is linearised anew about where it rests with what is learned.
   const auto about = [&](const VectorXd& theta) {
-    return NumberLearner(machine, noise, runs, options.linear, doubted, theta);
+    return NumberLearner(machine, noise, runs, options.linear, uncertain_numbers,
+                         theta);
   };
   // Noise first, with the stiffest gain, which explains nearly anything: slow errors of
   // the model leave changes from tick to tick as they are.

@@ -156,34 +156,4 @@ SoftestLearner LearnSoftest(
   return found;
 }
 
-std::optional<LearnedNumbers> LearnNumbers(const Machine& machine,
-                                           const VectorXd& noise,
-                                           const std::vector<RunSamples>& runs,
-                                           const UncertaintyOptions& beside, int most) {
-  const UncertainMachine uncertain = MakeUncertainMachine(machine, beside);
-  if (uncertain.known == 0) return std::nullopt;
-  LearnedNumbers learned;
-  const auto about = [&](const VectorXd& theta) {
-    return NumberLearner(machine, noise, runs, false, beside, theta);
-  };
-  // The machine is linearised anew about where it rests with what is learned.
-  constexpr int kAnew = 2;
-  NumberLearner learner = about(VectorXd::Zero(uncertain.known));
-  for (int i = 0; i < kAnew; ++i) {
-    if (i > 0) learner = about(learner.theta());
-    learner.Learn(learner.stiffest(), true);
-    learned.passes += learner.passes();
-    if (!std::isfinite(learner.Excess())) return std::nullopt;
-  }
-  const SoftestLearner softest = LearnSoftest(
-      std::move(learner), about, 1.0,
-      [&](std::size_t, int passes) { return learned.passes + passes < most; });
-  learned.passes += softest.passes;
-  learned.theta = softest.learner.theta();
-  for (const Unknown& unknown : softest.learner.unknowns()) {
-    learned.numbers.push_back(FindModelParameter(machine.plant(), unknown.name));
-  }
-  return learned;
-}
-
 }  // namespace mjdiag

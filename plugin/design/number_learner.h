@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "mjdiag/diagnosis/twin/run_pass.h"
@@ -91,19 +90,5 @@ SoftestLearner LearnSoftest(
     NumberLearner learner,
     const std::function<NumberLearner(const Eigen::VectorXd& theta)>& about,
     double excess, const std::function<bool(std::size_t gain, int passes)>& goes_on);
-
-/// theta of the numbers that MakeUncertainMachine names, from the plant as it is given to
-/// the softest gain that explains the runs, or the stiffest; and what it took.
-struct LearnedNumbers {
-  std::vector<ModelParameter> numbers;
-  Eigen::VectorXd theta;
-  int passes = 0;  ///< over all runs
-};
-/// None if its twin diverges, or no number of the plant is unknown.
-/// @param most  passes, or a few more; after them it ends with what it has
-std::optional<LearnedNumbers> LearnNumbers(const Machine& machine,
-                                           const Eigen::VectorXd& noise,
-                                           const std::vector<RunSamples>& runs,
-                                           const UncertaintyOptions& beside, int most);
 
 }  // namespace mjdiag

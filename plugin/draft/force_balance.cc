@@ -1,12 +1,12 @@
 #include "mjdiag/plugin/draft/force_balance.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "mjdiag/plugin/draft/plant_places.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/signals/butterworth.h"
+#include "mjdiag/signals/decompositions.h"
 #include "mjdiag/signals/derivative.h"
 #include "mjdiag/signals/error.h"
 #include "mjdiag/signals/zero_phase.h"
@@ -101,9 +101,7 @@ class FrictionOut {
     regressors.col(0).setOnes();
     regressors.col(1) = speed;
     regressors.col(2) = (speed / std::max(turning, 1e-300)).array().tanh();
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(regressors);
-    basis_ = MatrixXd(qr.householderQ() * MatrixXd::Identity(speed.size(), 3))
-                 .leftCols(qr.rank());
+    basis_ = OrthonormalRange(regressors);
   }
   double SquaredRest(const VectorXd& term) const {
     return (term - basis_ * (basis_.transpose() * term)).squaredNorm();

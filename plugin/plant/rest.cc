@@ -23,7 +23,7 @@ constexpr double kRounding = 1e-9;  // m or rad
 /// Stiffness over mass of what nothing holds, as rounding leaves it [1/s^2].
 constexpr double kFree = 1e-8;
 /// The same of what falls over.
-constexpr double kFalls = -1e-5;
+constexpr double kUnstable = -1e-5;
 
 /// In coordinates of unit mass, x = W^1/2 q.
 struct Slope {
@@ -56,7 +56,7 @@ class RestSearch {
       const std::optional<VectorXd> rest = Settle(from);
       if (!rest) break;
       const Slope slope = SlopeAt(*rest);
-      if (slope.symmetric.values[0] >= Falls(slope))
+      if (slope.symmetric.values[0] >= UnstableBelow(slope))
         return {*rest, true, NoForce(), true};
       if (!balanced) balanced = rest;
       if (held && drawn_at_rest) break;
@@ -70,7 +70,7 @@ class RestSearch {
   RestPose At(const VectorXd& qpos) {
     const VectorXd force = ForceAt(qpos);
     const Slope slope = SlopeAt(qpos);
-    const bool stable = slope.symmetric.values[0] >= Falls(slope);
+    const bool stable = slope.symmetric.values[0] >= UnstableBelow(slope);
     if (AtRest(force)) return {qpos, true, NoForce(), stable};
     return {qpos, false, -force, stable};
   }
@@ -112,8 +112,8 @@ class RestSearch {
   }
 
   /// Below: it falls over. Of stiff machines rounding alone is more.
-  static double Falls(const Slope& slope) {
-    return std::min(kFalls, -1e-12 * slope.symmetric.values.cwiseAbs().maxCoeff());
+  static double UnstableBelow(const Slope& slope) {
+    return std::min(kUnstable, -1e-12 * slope.symmetric.values.cwiseAbs().maxCoeff());
   }
 
   /// A little of the coordinates that fall fastest.

@@ -219,7 +219,9 @@ bool NoiseSearch::Move(const Kind& kind, double step, Point& best) const {
   });
   VectorXd each = VectorXd::Zero(best.x.size());
   for (const auto& [direction, sensor] : kind) {
-    const auto of = [sensor](const Point& point) { return point.deviances[sensor]; };
+    const auto of = [sensor = sensor](const Point& point) {
+      return point.deviances[sensor];
+    };
     each += LeastOf(of(tried[1]), of(best), of(tried[0])) * step * direction;
   }
   const double before = best.deviance();

@@ -23,4 +23,8 @@ double WorkTime::Seconds() const {
   return std::min(by_clock.count(), ProcessorSeconds() - processor_begin_);
 }
 
+std::function<bool()> AfterWork(std::optional<double> seconds) {
+  return [seconds, time = WorkTime()] { return seconds && time.Seconds() > *seconds; };
+}
+
 }  // namespace mjdiag

@@ -3,6 +3,8 @@
 // other things. By the clock alone an answer that a budget ends would depend on what else runs.
 
 #include <chrono>
+#include <functional>
+#include <optional>
 
 namespace mjdiag {
 
@@ -18,5 +20,9 @@ class WorkTime {
   std::chrono::steady_clock::time_point begin_;
   double processor_begin_;  // [s]
 };
+
+/// Whether the program has worked for more than so many seconds since this was called: an end
+/// of what has a budget. Never without one.
+std::function<bool()> AfterWork(std::optional<double> seconds);
 
 }  // namespace mjdiag

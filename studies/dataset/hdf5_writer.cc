@@ -43,15 +43,15 @@ void Check(herr_t status) {
 }
 
 /// HDF5 prints what goes wrong, unless somebody says that it shall not.
-class Silence {
+class ErrorOutputOff {
  public:
-  Silence() {
+  ErrorOutputOff() {
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }
-  ~Silence() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  ~ErrorOutputOff() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  ErrorOutputOff(const ErrorOutputOff&) = delete;
+  ErrorOutputOff& operator=(const ErrorOutputOff&) = delete;
 
  private:
   H5E_auto2_t function_ = nullptr;
@@ -89,7 +89,7 @@ Handle Creation(const std::vector<hsize_t>& chunk) {
 bool WritesDatasets() { return true; }
 
 struct Hdf5Writer::State {
-  Silence silence;
+  ErrorOutputOff quiet;
   std::filesystem::path path;
   Handle file;
   Handle links;  // that make groups on the way

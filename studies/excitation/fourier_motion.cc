@@ -1,10 +1,11 @@
 #include "mjdiag/studies/excitation/fourier_motion.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -24,8 +25,7 @@ double Folded(double value) {
 
 /// An orthonormal basis of what is at right angles to a vector.
 MatrixXd BesideOf(const VectorXd& vector) {
-  const MatrixXd q = Eigen::HouseholderQR<MatrixXd>(vector).householderQ();
-  return q.rightCols(vector.size() - 1);
+  return OrthonormalBasis(vector).rightCols(vector.size() - 1);
 }
 
 /// What begins at rest, or its derivative in time of that order: combinations of sines, then

@@ -1,9 +1,10 @@
 #include "mjdiag/studies/excitation/inertial_information.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "mjdiag/signals/decompositions.h"
 
 namespace mjdiag {
 namespace {
@@ -59,11 +60,10 @@ InertialRows RowsAlong(InertialRegressor& regressor, const JointMotion& motion,
 }
 
 InertialInformation InformationOf(const MatrixXd& W, double times) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(W.transpose() * W);
-  const VectorXd& values = eigen.eigenvalues();
+  const auto [values, vectors] = SymmetricEigenDecomposition(W.transpose() * W);
   const double largest = values.tail(1)[0];
   if (!(values[0] > largest * std::numeric_limits<double>::epsilon())) return {};
-  const auto shares = eigen.eigenvectors().array().square();
+  const auto shares = vectors.array().square();
   return {
       std::sqrt(largest / values[0]),
       ((shares.rowwise() / values.transpose().array()).rowwise().sum() / times).sqrt()};
@@ -79,12 +79,7 @@ std::vector<Index> BaseNumbers(InertialRegressor& regressor,
   const VectorXd size = W.colwise().norm();
   for (Index c = 0; c < W.cols(); ++c)
     W.col(c) /= std::max(size[c], kDependent * size.maxCoeff());
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(W);
-  qr.setThreshold(kDependent);
-  const auto& order = qr.colsPermutation().indices();
-  std::vector<Index> numbers(order.data(), order.data() + qr.rank());
-  std::ranges::sort(numbers);
-  return numbers;
+  return IndependentColumns(W, kDependent);
 }
 
 VectorXd NoiseBeside(InertialRegressor& regressor, const JointMotion& motion,
@@ -100,7 +95,7 @@ VectorXd NoiseBeside(InertialRegressor& regressor, const JointMotion& motion,
     const MatrixXd weighted =
         (forces.array().colwise() / noise.array()).matrix().transpose();
     const VectorXd f = weighted.reshaped();
-    const VectorXd left = f - W * W.colPivHouseholderQr().solve(f);
+    const VectorXd left = f - W * LeastSquaresOfOne(W, f);
     for (Index j = 0; j < joints; ++j)
       noise[j] *= std::sqrt(left.segment(j * samples, samples).squaredNorm() / free);
   }

@@ -161,7 +161,7 @@ TEST(Command, RenderWritesAClip) {
   EXPECT_GT(std::filesystem::file_size(folder.path() / "clip.mp4"), 1000u);
 }
 
-TEST(Command, RenderOfARecordLastsAsLongAsItIsAsked) {
+TEST(Command, RenderOfARecordLastsAsLongAsAsked) {
   const TemporaryFolder folder;
   const std::string out = "'" + folder.path().string() + "'";
   ASSERT_EQ(

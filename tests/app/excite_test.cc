@@ -4,9 +4,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "app/command_line.h"
 
@@ -50,6 +56,31 @@ TEST(ExciteCommand, SaysWhatAMachineWithoutControllersNeeds) {
   EXPECT_THAT(complaint("panda --record none.csv --for friction"),
               HasSubstr("no --for"));
   EXPECT_THAT(complaint("ab383 --record none.csv"), HasSubstr("controllers"));
+}
+
+// Held for longer than its budget it goes on where it was.
+TEST(ExciteCommand, HasABudgetOfWork) {
+  constexpr double kBudget = 2.0;  // s
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c",
+          "exec '" MJDIAG_COMMAND "' excite --setup '" MJDIAG_SOURCE_DIR
+          "/mjcf/ab383' --budget 2 >/dev/null 2>&1",
+          nullptr);
+    _exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  kill(child, SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::duration<double>(1.5 * kBudget));
+  kill(child, SIGCONT);
+  int status = 0;
+  rusage used{};
+  ASSERT_EQ(wait4(child, &status, 0, &used), child);
+  EXPECT_EQ(status, 0);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  EXPECT_GE(seconds(used.ru_utime) + seconds(used.ru_stime), kBudget);
 }
 
 }  // namespace

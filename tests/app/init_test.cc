@@ -120,7 +120,7 @@ TEST_F(InitCommand, WritesItsQuestionsAndSaysSoByItsStatus) {
   EXPECT_THAT(compare.err, HasSubstr("mjdiag init"));
 }
 
-TEST_F(InitCommand, ReplacesNoSetupUnlessItIsTold) {
+TEST_F(InitCommand, ReplacesNoSetupUnlessAsked) {
   const std::string line = "init --plant mjcf/panda/plant.xml --out" + Path("drafted");
   EXPECT_EQ(RunCommand(line).status, 0);
   const std::string before = ReadAll(folder_ / "drafted/setup.toml");

@@ -62,7 +62,7 @@ constexpr int kLong = 2000;
 constexpr std::array<ReferenceSample, 2> kMoving{
     {{.position = 1.0, .velocity = 2.0}, {.position = 1.25, .velocity = -3.0}}};
 
-TEST(Reconfiguration, LeavesAHealthyMachineAsItIsToTheLastBit) {
+TEST(Reconfiguration, LeavesAHealthyMachineUnchangedToTheLastBit) {
   Reconfiguration reconfiguration = Bench().Make();
   FaultEstimates estimates = reconfiguration.MakeEstimates();
   for (const double sd : {kNaN, 1.0, 1e-3}) {

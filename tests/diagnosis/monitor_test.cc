@@ -289,7 +289,7 @@ TEST(DiagnosisMonitor, NamesItsFaultsAtAnyTick) {
   EXPECT_THAT(named(), testing::ElementsAre("damping"));
 }
 
-TEST(DiagnosisMonitor, RegressesFromTheSampleThatItIsTold) {
+TEST(DiagnosisMonitor, RegressesFromTheGivenSample) {
   const MatrixXd signals = test::Motion(test::Stage(), test::Drive(1000));
   const DiagnosisRecording recording =
       RecordDiagnosis(Design(), RecordOf(signals), {}, 601);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mjdiag/report/cause_text.h"
+#include "mjdiag/report/mismatch_tables.h"
 #include "report/sample_discovery.h"
 
 namespace mjdiag {

@@ -50,7 +50,7 @@ def filters_and_spectra(random):
     show("gradient", np.gradient(x, 0.001, edge_order=2))
 
 
-def discretisation(random):
+def simulation(random):
     """A stiff machine: three masses, springs up to 2 kHz, at 8 kHz."""
     mass = np.diag([50.0, 6.0, 0.3])
     stiffness = np.array([[2e7, -1.5e7, 0], [-1.5e7, 3.5e7, -2e7], [0, -2e7, 2.2e7]])
@@ -62,8 +62,6 @@ def discretisation(random):
     C = np.array([[1, 0, 0, 0, 0, 0], [-1, 1, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1.0]])
     D = np.array([[0, 0], [0, 0], [1e-3, 0]])
     u = random.normal(size=(400, 2))
-    for name, matrix in zip("ABCD", (A, B, C, D)):
-        show(f"lti.{name}", matrix)
     show("lti.input", u.T)
     for method in ("zoh", "bilinear"):
         Ad, Bd, Cd, Dd, T = signal.cont2discrete((A, B, C, D), 1 / 8000.0, method)
@@ -77,4 +75,4 @@ if __name__ == "__main__":
     generator = np.random.default_rng(20240607)
     butterworth()
     filters_and_spectra(generator)
-    discretisation(generator)
+    simulation(generator)

@@ -8,7 +8,6 @@
 
 #include "mjdiag/signals/butterworth.h"
 #include "mjdiag/signals/derivative.h"
-#include "mjdiag/signals/discretize.h"
 #include "mjdiag/signals/simulate_lti.h"
 #include "mjdiag/signals/spectrum.h"
 #include "mjdiag/signals/zero_phase.h"
@@ -126,22 +125,14 @@ TEST_F(Scipy, AgreesOnCentralDifferences) {
   EXPECT_LT(Difference(derivative, Value("gradient")), 1e-13);
 }
 
-TEST_F(Scipy, AgreesOnDiscretisationAndSimulation) {
-  const StateSpace continuous = System("lti.", 0.0);
-  const double T = 1.0 / 8000.0;
+TEST_F(Scipy, AgreesOnSimulation) {
   const VectorXd initial = VectorXd::LinSpaced(6, 0.0, 5e-6);
-  const std::map<std::string, StateSpace> methods{
-      {"lti.zoh.", DiscretizeZoh(continuous, T)},
-      {"lti.bilinear.", DiscretizeTustin(continuous, T)}};
-  for (const auto& [prefix, discrete] : methods) {
+  for (const std::string prefix : {"lti.zoh.", "lti.bilinear."}) {
     SCOPED_TRACE(prefix);
-    const StateSpace reference = System(prefix, T);
-    EXPECT_LT(Difference(discrete.A, reference.A), 1e-12);
-    EXPECT_LT(Difference(discrete.B, reference.B), 1e-12);
-    EXPECT_LT(Difference(discrete.C, reference.C), 1e-12);
-    EXPECT_LT(Difference(discrete.D, reference.D), 1e-12);
-    const MatrixXd output = SimulateLti(discrete, Value("lti.input"), initial);
+    const MatrixXd output =
+        SimulateLti(System(prefix, 1.0 / 8000.0), Value("lti.input"), initial);
     const MatrixXd& expected = Value(prefix + "output");
+    ASSERT_EQ(output.rows(), expected.rows());
     for (Eigen::Index i = 0; i < output.rows(); ++i) {
       EXPECT_LT(Difference(output.row(i), expected.row(i)), 1e-10) << "output " << i;
     }

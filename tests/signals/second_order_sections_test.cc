@@ -26,7 +26,7 @@ TEST(SectionFilter, ImpulseResponseTransformsToTheFrequencyResponse) {
   EXPECT_NEAR(std::abs(transform - expected), 0.0, 1e-14);
 }
 
-TEST(SectionFilter, GoesOnWithoutATransientOnceSettled) {
+TEST(SectionFilter, GoesOnWithoutATransientFromItsSteadyState) {
   SectionFilter filter(kSections);
   filter.Update(-3.0);
   filter.Settle(2.5);

@@ -65,13 +65,6 @@ TEST(WelchDensity, RefusesValuesOutOfRange) {
   EXPECT_NO_THROW(WelchDensity(signal, 1.0, 100, 99));
 }
 
-TEST(CumulativePower, GrowsToTheWholePower) {
-  const Spectrum spectrum = WelchDensity(Sine(8000, 1.0, 400.0), kSampleTime, 1000);
-  const VectorXd power = CumulativePower(spectrum);
-  EXPECT_NEAR(power[power.size() - 1], 0.5, 1e-9);
-  EXPECT_NEAR(power[40], 0.0, 1e-9);  // 320 Hz
-}
-
 TEST(FindPeaks, FindsMaximaAboveTheThresholdOnly) {
   Spectrum spectrum;
   spectrum.frequency = VectorXd::LinSpaced(10, 0.0, 9.0);

@@ -104,7 +104,7 @@ TEST_F(Journal, DoesNotBelieveABrokenEntry) {
   }
 }
 
-TEST_F(Journal, OfAnotherStudyIsRefusedAndLeftAsItIs) {
+TEST_F(Journal, OfAnotherStudyIsRefusedAndLeftUnchanged) {
   const std::string whole = Bytes(file_);
   const std::string message =
       test::MessageOf<InputError>([&] { RunJournal(file_, "Identity", 4); });

@@ -72,7 +72,7 @@ TEST(SurelySeenSize, IsNoneWhereTheLargestIsNotSeenByEnough) {
   EXPECT_FALSE(SurelySeenSize({0.5, 1.1}, {}, {40, 1}, most));
 }
 
-TEST(SurelySeenSize, EndsAsSoonAsItIsDecided) {
+TEST(SurelySeenSize, EndsAsSoonAsDecided) {
   std::atomic<int> asked = 0;
   const auto never = [&](double, std::uint64_t) {
     ++asked;

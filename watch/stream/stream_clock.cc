@@ -13,7 +13,7 @@ constexpr double kStretch = 30.0;
 constexpr double kShortest = 1.0;
 constexpr double kShortestArrival = 3.0;
 /// Of such a stretch our clock sees when packets came, which is late by up to so much [s].
-constexpr double kLateness = 0.1;
+constexpr double kArrivalDelay = 0.1;
 /// A clock that says it was so much longer or shorter than the count was set [s].
 constexpr double kStep = 0.1;
 /// A rate that is so far off is another one.
@@ -74,7 +74,7 @@ void StreamClock::Add(const TickHead& head) {
 
 bool StreamClock::wrong_rate() const {
   return std::abs(report_.sent_rate) > kOtherRate ||
-         std::abs(report_.arrived_rate) > kOtherRate + kLateness / kShortestArrival;
+         std::abs(report_.arrived_rate) > kOtherRate + kArrivalDelay / kShortestArrival;
 }
 
 std::vector<std::string> StreamClock::Notes() const {

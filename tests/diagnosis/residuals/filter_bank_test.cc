@@ -155,7 +155,7 @@ TEST(OutputCovariance, IsWhatNoiseLeaves) {
   }
 }
 
-TEST(RunningBank, HasNoTransientWhenSettled) {
+TEST(RunningBank, HasNoTransientFromItsSteadyState) {
   const Denominator denominator{7, 50.0};
   const FilterBank bank =
       MakeFilterBank(Sample(6, denominator), denominator, kSampleTime);

@@ -61,7 +61,7 @@ TEST(NameFaults, JudgesTheTonesOfADisturbanceTogether) {
 }
 
 // The prices are exact for one group and cautious for several.
-TEST(NameFaults, IsWrongAboutHealthyMachinesAsOftenAsItIsAllowedTo) {
+TEST(NameFaults, IsWrongAboutHealthyMachinesAsOftenAsAllowed) {
   constexpr int kRuns = 4000;
   constexpr double kAllowed = 0.05;
   const MatrixXd covariance = Covariance(0.8);

@@ -95,7 +95,7 @@ TEST(WhitenedBlock, ShowsWhatIsSlow) {
   }
 }
 
-TEST(WhitenedBlock, CountsAsManyTimesLessAsItIsDiscounted) {
+TEST(WhitenedBlock, CountsLessByItsDiscount) {
   const Block block;
   const MatrixXd reading = MatrixXd::Zero(kReadings, kTicks);
   const WhitenedBlock whole = Whitened(block, reading);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "mjdiag/discovery/answer/missing_share.h"
 #include "support/arm.h"
 
@@ -17,13 +19,25 @@ using ::testing::Not;
 constexpr const char* kDamper = "viscous_friction@elbow:coefficient=0.05";
 constexpr const char* kOther = "viscous_friction@shoulder:coefficient=0.2";
 
+/// What is found in a record of an arm that lacks something: once, however many other records
+/// it is judged by.
+const Explained& ExplainedOf(const std::vector<std::string>& lacking,
+                             const Machine& machine, const MeasuredRun& record,
+                             const Eigen::VectorXd& sd) {
+  static std::map<std::vector<std::string>, Explained> known;
+  const auto at = known.find(lacking);
+  if (at != known.end()) return at->second;
+  return known.emplace(lacking, Explain(machine, record, sd, {.seconds = 300.0}))
+      .first->second;
+}
+
 /// What is found in one record of an arm, and what another says of it.
 struct Judged {
   Judged(const std::vector<std::string>& seen, const std::vector<std::string>& unseen)
       : run{ToMeasuredRun(arm.setup(), test::Arm::Measure(seen, 1.0, 64)),
             ToMeasuredRun(arm.setup(), test::Arm::Measure(unseen, 1.0, 64, 2)),
             {0}},
-        explained(Explain(arm.machine, run.seen, sd, {.seconds = 300.0})),
+        explained(ExplainedOf(seen, arm.machine, run.seen, sd)),
         data{arm.machine, run, sd, explained.blocks, explained.steps},
         judgement(JudgeUnseen(data, explained, [] { return false; })) {}
 

@@ -108,7 +108,7 @@ TEST_F(Tolerance, BringsTheTrackingErrorBackOnBothPlants) {
   }
 }
 
-TEST_F(Tolerance, LeavesAHealthyRunAsItIsToTheLastBit) {
+TEST_F(Tolerance, LeavesAHealthyRunUnchangedToTheLastBit) {
   const Record plain = Run({}, true, 0.5);
   const Record watched = RunWatched({}, true, 0.5);
   EXPECT_TRUE(summary_.empty());

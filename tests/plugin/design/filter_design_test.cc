@@ -123,7 +123,7 @@ TEST(MonitorObserver, GivesInsideTheCallbackTheBitsOfTheRecord) {
   }
 }
 
-TEST(MonitorObserver, LeavesTheRunAsItIs) {
+TEST(MonitorObserver, LeavesTheRunUnchanged) {
   const Bench bench;
   DiagnosisMonitor monitor(bench.design);
   const Record watched = bench.Watch(monitor, bench.machine, {}, false);

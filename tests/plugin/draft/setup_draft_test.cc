@@ -48,7 +48,7 @@ std::string InDegrees(const SwungMoment& m) {
   return Row(m.time, kDegrees * m.angle, m.torque);
 }
 
-TEST_F(SetupDraftOf, ALogWithUnitsIsCertainAndIsReadAsItIs) {
+TEST_F(SetupDraftOf, ALogWithUnitsIsCertainAndIsReadUnchanged) {
   const SetupDraft draft =
       Draft(Arm(kMotor + kEncoder), SwungLog("t [s],q [rad],tau [N m]", InRadians));
   EXPECT_THAT(draft.questions, IsEmpty());

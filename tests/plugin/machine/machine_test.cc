@@ -70,7 +70,7 @@ TEST(Machine, WithNothingIsTheSame) {
   EXPECT_EQ(&same.linear(), &machine.linear());
 }
 
-TEST(Machine, WithChangesLeavesTheNominalOneAsItIs) {
+TEST(Machine, WithChangesLeavesTheNominalOneUnchanged) {
   const Machine nominal = test::Bonder();
   const double damping = DampingOf(nominal, "X");
   const Eigen::MatrixXd before = nominal.linear().D;

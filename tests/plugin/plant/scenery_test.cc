@@ -52,7 +52,7 @@ const std::string kConstrained = R"(
 </mujoco>)";
 
 /// As MuJoCo loads it.
-ModelPtr LoadAsItIs(const std::string& file) {
+ModelPtr LoadUnchanged(const std::string& file) {
   std::array<char, 1000> error{};
   return ModelPtr(mj_loadXML(file.c_str(), nullptr, error.data(), error.size()));
 }
@@ -71,7 +71,7 @@ class UnusedRows : public testing::Test {
 
 TEST_F(UnusedRows, AreDroppedAndTheMotionStaysTheSame) {
   const std::string file = Write("0");
-  const ModelPtr all = LoadAsItIs(file);
+  const ModelPtr all = LoadUnchanged(file);
   const ModelPtr model = LoadModel(file);
   EXPECT_LT(model->njmax, all->njmax / 5);
   const DataPtr expected = MakeData(*all);
@@ -93,7 +93,7 @@ TEST_F(UnusedRows, AreDroppedAndTheMotionStaysTheSame) {
 
 TEST_F(UnusedRows, StayWhereGeomsMayTouch) {
   const std::string file = Write("1");
-  EXPECT_EQ(LoadModel(file)->njmax, LoadAsItIs(file)->njmax);
+  EXPECT_EQ(LoadModel(file)->njmax, LoadUnchanged(file)->njmax);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 
 namespace mjdiag {
@@ -34,6 +35,17 @@ TEST(WorkTime, IsNeverLongerThanByTheClock) {
   const double worked = time.Seconds();
   EXPECT_GT(worked, 0.0);
   EXPECT_LE(worked, SecondsSince(begin));
+}
+
+TEST(AfterWork, IsNotOverWhileAProgramWaits) {
+  const auto is_over = AfterWork(0.1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_FALSE(is_over());
+  const WorkTime time;
+  while (time.Seconds() < 0.15) {
+  }
+  EXPECT_TRUE(is_over());
+  EXPECT_FALSE(AfterWork(std::nullopt)());
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ class ServoFile : public ::testing::Test {
   const test::TemporaryFolder folder_;
 };
 
-TEST_F(ServoFile, WithUniformTimesIsReadAsItIs) {
+TEST_F(ServoFile, WithUniformTimesIsReadUnchanged) {
   const MeasuredFile file = Read(0.0);
   EXPECT_THAT(file.notes, IsEmpty());
   EXPECT_EQ(file.record.samples(), 400);

@@ -41,7 +41,7 @@ TEST(XmlText, IsItselfWithoutChanges) {
   EXPECT_EQ(XmlText("test", kText).Text(), kText);
 }
 
-TEST(XmlText, ChangesWhatItIsToldAndNothingElse) {
+TEST(XmlText, ChangesWhatIsAskedAndNothingElse) {
   const auto changed = [](const auto& change) {
     XmlText xml("test", kText);
     change(xml);

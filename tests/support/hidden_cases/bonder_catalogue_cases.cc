@@ -27,8 +27,6 @@ TrueCause Listed(const std::string& kind, const std::vector<std::string>& places
   return cause;
 }
 
-Hidden Nothing(const Machine&, CaseDice&) { return {}; }
-
 TrueCause WeakenMotor(const Machine& machine, const std::string& axis, double factor,
                       HiddenPhysics& physics) {
   physics.drives.push_back([u = ActuatorOf(machine, "u_" + axis), factor](
@@ -68,9 +66,9 @@ Hidden WeakMotor(const Machine& machine, CaseDice&) {
 Hidden LateDrive(const Machine& machine, CaseDice&) {
   Hidden hidden;
   const double late = 0.75 * machine.rates().tick();
-  hidden.physics.lateness =
+  hidden.physics.input_delay =
       VectorXd::Zero(static_cast<Index>(machine.channels().actuators.size()));
-  hidden.physics.lateness[ActuatorOf(machine, "u_y")] = late;
+  hidden.physics.input_delay[ActuatorOf(machine, "u_y")] = late;
   hidden.truth = {
       Listed("delay", {"Y"}, {"input_delay", "y_motor", {{"delay", late}}})};
   return hidden;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "support/hidden_cases/bonder_invented.h"
 
@@ -11,8 +10,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Magnets of unlike strength: the motor gives more over one pole than over the next.
 Hidden UnlikeMagnets(const Machine& machine, CaseDice& dice) {

@@ -8,7 +8,7 @@ namespace mjdiag::test {
 Eigen::VectorXd DryFriction(const Eigen::MatrixXd& A, const Eigen::VectorXd& w,
                             const Eigen::VectorXd& bound) {
   constexpr int kMostRounds = 200;
-  constexpr double kSettled = 1e-13;  // of the bound
+  constexpr double kConverged = 1e-13;  // of the bound
   Eigen::VectorXd f = Eigen::VectorXd::Zero(w.size());
   for (int round = 0; round < kMostRounds; ++round) {
     double moved = 0.0;
@@ -19,7 +19,7 @@ Eigen::VectorXd DryFriction(const Eigen::MatrixXd& A, const Eigen::VectorXd& w,
           std::clamp(before - (w[i] + A.row(i).dot(f)) / A(i, i), -bound[i], bound[i]);
       moved = std::max(moved, std::abs(f[i] - before) / bound[i]);
     }
-    if (moved < kSettled) break;
+    if (moved < kConverged) break;
   }
   return f;
 }

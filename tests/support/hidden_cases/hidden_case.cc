@@ -4,6 +4,8 @@
 
 namespace mjdiag::test {
 
+Hidden Nothing(const Machine&, CaseDice&) { return {}; }
+
 Eigen::Index JointOf(const Machine& machine, const std::string& name) {
   return machine.plant().jnt_dofadr[FindElement(machine.plant(), mjOBJ_JOINT, name)];
 }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Hidden {
   std::vector<TrueCause> truth;
 };
 
+/// The case of a machine that lacks nothing.
+Hidden Nothing(const Machine&, CaseDice&);
+
 struct HiddenCase {
   std::string name;
   std::string words;  ///< what it is, for people
@@ -48,6 +52,8 @@ struct HiddenCase {
 const std::vector<HiddenCase>& BonderCatalogueCases();
 /// Laws of no list, in its guides, parasitic joints, drives, encoders and floor.
 const std::vector<HiddenCase>& BonderInventedCases();
+
+inline constexpr double kTurn = 2.0 * std::numbers::pi;  ///< [rad]
 
 /// Degree of freedom of a joint, and places of an actuator and a sensor channel.
 Eigen::Index JointOf(const Machine& machine, const std::string& name);

@@ -23,7 +23,7 @@ struct HiddenPhysics {
   using Law = std::function<void(const Moment&, Eigen::VectorXd&)>;
 
   /// How late every actuator acts [s]; empty: at once.
-  Eigen::VectorXd lateness = {};
+  Eigen::VectorXd input_delay = {};
   /// z at the start.
   Eigen::VectorXd memory = {};
   std::vector<Law> drives = {};     ///< change u

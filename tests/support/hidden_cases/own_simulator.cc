@@ -97,8 +97,8 @@ class OwnMachine {
   /// in none of them by halves.
   VectorXd Command(Index tick, int step) const {
     VectorXd command = commands_.back();
-    for (Index i = 0; i < hidden_.lateness.size(); ++i) {
-      const double ago = hidden_.lateness[i] / tick_ - (step + 0.5) / steps_;
+    for (Index i = 0; i < hidden_.input_delay.size(); ++i) {
+      const double ago = hidden_.input_delay[i] / tick_ - (step + 0.5) / steps_;
       const auto whole = std::max<Index>(0, static_cast<Index>(std::ceil(ago)));
       command[i] =
           commands_[static_cast<std::size_t>(std::max<Index>(0, tick - whole))][i];

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace mjdiag::test {
@@ -10,8 +9,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 constexpr const char* kDoublePendulum = R"(<mujoco model="double_pendulum">
   <compiler angle="radian"/>
@@ -164,8 +161,6 @@ OwnComputer::Law Hop(CaseDice dice) {
                            20.0 * (-1.0 + knee.At(t) - y[3]) - 0.4 * rate[3]};
   };
 }
-
-Hidden Nothing(const Machine&, CaseDice&) { return {}; }
 
 Hidden RubbingElbow(const Machine& machine, CaseDice&) {
   constexpr double kForce = 0.06;  // N m
