@@ -237,10 +237,9 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   settle([&](const Model& model) { return !sticks(model); });
   bool gains = false;
   for (std::size_t i = 0; i < settled.size(); ++i) {
-    gains =
-        gains || (settled[i] && !HaveSameBlocks(tried[i].fit.model, found_.fit.model) &&
-                  found_.score - settled[i]->score() >
-                      std::max(kLeastGain, kHalf * tried[i].gain));
+    gains = gains || (settled[i] && !is_itself(tried[i]) &&
+                      found_.score - settled[i]->score() >
+                          std::max(kLeastGain, kHalf * tried[i].gain));
   }
   if (!gains) settle(sticks);
   std::optional<std::size_t> best;
@@ -253,8 +252,12 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (settled[i]->score() < least) best = i;
   }
   for (std::size_t i = 0; i < settled.size(); ++i) {
-    constexpr double kHopeless = 10.0;                  // times what it was to gain
-    if (gains && sticks(tried[i].fit.model)) continue;  // not asked
+    constexpr double kHopeless = 10.0;  // times what it was to gain
+    if (gains && sticks(tried[i].fit.model)) {
+      Decide(tried[i].fit.model, -tried[i].gain,
+             "what creeps in its place gains what it promises");
+      continue;
+    }
     if (!settled[i] ||
         settled[i]->score() - found_.score > kHopeless * std::abs(tried[i].gain)) {
       hopeless_.push_back(tried[i].fit.model);
