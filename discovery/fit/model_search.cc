@@ -90,7 +90,11 @@ bool ModelSearch::ChooseFriction(bool every_form) {
   for (const Member& member : found_.fit.model) {
     if (found_.blocks[member.block].IsDryFriction()) rubs.push_back(member);
   }
-  every_form = every_form || !AreSpeedsKnown(found_.blocks, found_.fit);
+  // What the form of one friction leaves other laws take up; with many joints that rub nothing
+  // else would come in before the time is over.
+  constexpr std::ptrdiff_t kFew = 2;
+  every_form = every_form || std::ssize(rubs) <= kFew ||
+               !AreSpeedsKnown(found_.blocks, found_.fit);
   Model& asked_of = every_form ? asked_every_form_of_ : asked_forms_of_;
   if (AreNear(rubs, asked_of, kAlike)) return false;
   asked_of = rubs;
