@@ -57,7 +57,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
-  ChooseFriction(false);
+  ChooseFriction();
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
@@ -83,28 +83,20 @@ const Moves& ModelSearch::MovesNow(Standing& standing) {
   return standing.moves.emplace(at_every_shape_, std::move(moves)).first->second;
 }
 
-bool ModelSearch::ChooseFriction(bool every_form) {
+void ModelSearch::ChooseFriction() {
   // What was asked of all but the same friction is known.
   constexpr double kAlike = 0.2;
   Model rubs;
   for (const Member& member : found_.fit.model) {
     if (found_.blocks[member.block].IsDryFriction()) rubs.push_back(member);
   }
-  // What the form of one friction leaves other laws take up; with many joints that rub nothing
-  // else would come in before the time is over.
-  constexpr std::ptrdiff_t kFew = 2;
-  every_form = every_form || std::ssize(rubs) <= kFew ||
-               !AreSpeedsKnown(found_.blocks, found_.fit);
-  Model& asked_of = every_form ? asked_every_form_of_ : asked_forms_of_;
-  if (AreNear(rubs, asked_of, kAlike)) return false;
-  asked_of = rubs;
-  if (every_form) asked_forms_of_ = rubs;
-  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, every_form);
-  if (!other) return false;
+  if (AreNear(rubs, asked_forms_of_, kAlike)) return;
+  asked_forms_of_ = rubs;
+  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path});
+  if (!other) return;
   Say("joints that stand: " + Difference(other->score()) + "  " +
       ModelText(found_.blocks, other->fit.model));
   Take(std::move(*other));
-  return true;
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
@@ -143,12 +135,7 @@ bool ModelSearch::Step() {
   }
   if (!move) move = BestMove(standing);
   if (!move && asks_inputs) move = SmoothedInputs();
-  if (!move) {
-    if (IsOver() || !ChooseFriction(true)) return false;
-    found_.rivals.clear();
-    found_.steps_taken.push_back({found_.fit, found_.path.noise});
-    return true;
-  }
+  if (!move) return false;
   if (!ChooseFinerSteps(move->settled.score())) Adopt(std::move(*move));
   return true;
 }
@@ -217,7 +204,6 @@ void ModelSearch::LookAtAll() {
   hopeless_.clear();
   worthless_.clear();
   asked_forms_of_.clear();
-  asked_every_form_of_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {
     if (block.candidate) WidenFrequencies(*block.candidate, as_measured_.sample_time);
@@ -256,7 +242,6 @@ Explained ModelSearch::Run() {
       ChooseFinerSteps(found_.score - kLeastGain);
       may_be_at_ends_ = true;
       asked_forms_of_.clear();
-      asked_every_form_of_.clear();
       looks_at_forces_ = true;
       hopeless_.clear();
       StepOn();

@@ -163,7 +163,7 @@ class ModelSearch {
   /// @param path  with those steps
   void TakeSteps(PhysicsSteps steps, FilterPath path);
   /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
-  bool ChooseFriction(bool every_form);
+  void ChooseFriction();
 
   const Machine& given_;
   Machine machine_;  // as given, in the ticks that are looked at
@@ -192,7 +192,7 @@ class ModelSearch {
   /// What moves made of this one along this path, and fits behind kept gains found no better.
   std::vector<Model> worthless_;
   /// Dry friction whose forms have been asked (other_friction.h).
-  Model asked_forms_of_, asked_every_form_of_;
+  Model asked_forms_of_;
   Explained found_;
   std::optional<Standing> standing_;  // none where the model or its path is another
 };

@@ -2,7 +2,6 @@
 // those settled behind noises of their own.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -121,10 +120,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     try {
       const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
                           move.other_steps};
-      // Values as they are need no run before it is known who is asked.
-      ModelFit fit;
-      fit.model = model;
-      if (iterations > 0) fit = fitted(model, judged);
+      ModelFit fit = fitted(model, judged);
       double gain = moves.score - move.score;
       if (iterations > 0) {
         fit = Pruned(found_.blocks, std::move(fit),
@@ -189,59 +185,32 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Decide(one.fit.model, -one.gain, "its values are none that such a law can have");
     return true;
   });
-  // What sticks is asked in the place of what creeps where that does not gain half of what it
-  // promises: a filter finds its way with what creeps where it is lost with what sticks, and the
-  // other way round only where joints stand.
-  constexpr double kHalf = 0.5;
-  const auto sticks = [&](const Model& model) {
-    return iterations == 0 && !HaveSameBlocks(Creeping(found_.blocks, model), model);
-  };
-  const auto is_itself = [&](const Tried& one) {
+  const bool has_itself = std::ranges::any_of(tried, [&](const Tried& one) {
     return HaveSameBlocks(one.fit.model, found_.fit.model);
-  };
-  constexpr std::size_t kMostFiltered = 3;
-  std::array<std::size_t, 2> kept{};  // what does not stick, what does
-  std::erase_if(tried, [&](const Tried& one) {
-    if (is_itself(one)) return false;
-    if (++kept[sticks(one.fit.model) ? 1 : 0] <= kMostFiltered) return false;
-    Decide(one.fit.model, -one.gain, "three others are worth more");
-    return true;
   });
-  std::vector<std::optional<ConvergedModel>> settled(tried.size());
-  const auto settle = [&](const auto& which) {
-    for (const bool other_steps : {false, true}) {
-      std::vector<ModelFit> fits;
-      std::vector<std::size_t> places;
-      for (std::size_t i = 0; i < tried.size(); ++i) {
-        if (tried[i].judged.second != other_steps || !which(tried[i].fit.model))
-          continue;
-        try {
-          fits.push_back(iterations > 0 ? tried[i].fit
-                                        : fitted(tried[i].fit.model, tried[i].judged));
-          places.push_back(i);
-        } catch (const NumericalError&) {
-        } catch (const InputError&) {
-        }
-      }
-      if (fits.empty()) continue;
-      const Tried& first = tried[places.front()];
-      auto rivals =
-          SettleRivals(Beside(other_steps ? steps_.Other() : steps_), std::move(fits),
-                       NoisesBeside(whitenings.noises[first.judged.first]),
-                       found_.score, first.gain);
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        settled[places[i]] = std::move(rivals[i]);
-      }
-    }
-  };
-  settle([&](const Model& model) { return !sticks(model); });
-  bool gains = false;
-  for (std::size_t i = 0; i < settled.size(); ++i) {
-    gains = gains || (settled[i] && !is_itself(tried[i]) &&
-                      found_.score - settled[i]->score() >
-                          std::max(kLeastGain, kHalf * tried[i].gain));
+  const std::size_t most_filtered = has_itself ? 4 : 3;
+  while (tried.size() > most_filtered) {
+    Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
+    tried.pop_back();
   }
-  if (!gains) settle(sticks);
+  std::vector<std::optional<ConvergedModel>> settled(tried.size());
+  for (const bool other_steps : {false, true}) {
+    std::vector<ModelFit> fits;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      if (tried[i].judged.second != other_steps) continue;
+      fits.push_back(tried[i].fit);
+      places.push_back(i);
+    }
+    if (fits.empty()) continue;
+    const Tried& first = tried[places.front()];
+    auto rivals = SettleRivals(
+        Beside(other_steps ? steps_.Other() : steps_), std::move(fits),
+        NoisesBeside(whitenings.noises[first.judged.first]), found_.score, first.gain);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      settled[places[i]] = std::move(rivals[i]);
+    }
+  }
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < settled.size(); ++i) {
     if (!settled[i]) continue;
@@ -253,11 +222,6 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   }
   for (std::size_t i = 0; i < settled.size(); ++i) {
     constexpr double kHopeless = 10.0;  // times what it was to gain
-    if (gains && sticks(tried[i].fit.model)) {
-      Decide(tried[i].fit.model, -tried[i].gain,
-             "what creeps in its place gains what it promises");
-      continue;
-    }
     if (!settled[i] ||
         settled[i]->score() - found_.score > kHopeless * std::abs(tried[i].gain)) {
       hopeless_.push_back(tried[i].fit.model);

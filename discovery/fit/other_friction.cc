@@ -43,22 +43,19 @@ VectorXd FastestOf(const mjModel& plant, const FilterPath& path) {
 }
 
 std::vector<Model> OtherForms(const ConvergedBeside& beside,
-                              const ConvergedModel& found, bool every_form) {
+                              const ConvergedModel& found) {
   const Model& model = found.fit.model;
+  std::vector<Model> forms{GivingWay(beside.blocks, model),
+                           Abrupt(beside.blocks, model)};
   const Machine machine = beside.machine_with(model);
-  std::vector<Model> forms;
-  // From what encoders tell of their stroke to what a regression sees.
   const VectorXd strokes = StrokesOf(machine.plant(), found.path);
+  // From what encoders tell of their stroke to what a regression sees.
   for (const double share : {1e-5, 1e-4, 1e-3}) {
     forms.push_back(Springing(beside.blocks, model, share * strokes));
   }
-  if (every_form) {
-    forms.push_back(GivingWay(beside.blocks, model));
-    forms.push_back(Abrupt(beside.blocks, model));
-    const VectorXd fastest = FastestOf(machine.plant(), found.path);
-    for (const double share : {0.003, 0.01, 0.03, 0.1}) {
-      forms.push_back(BreakingAway(beside.blocks, model, share * fastest));
-    }
+  const VectorXd fastest = FastestOf(machine.plant(), found.path);
+  for (const double share : {0.003, 0.01, 0.03, 0.1}) {
+    forms.push_back(BreakingAway(beside.blocks, model, share * fastest));
   }
   std::erase_if(forms, [&](const Model& one) { return HaveSameBlocks(one, model); });
   return forms;
@@ -84,29 +81,13 @@ std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
 
 }  // namespace
 
-bool AreSpeedsKnown(const std::vector<Block>& blocks, const ModelFit& fit) {
-  constexpr double kKnown = 0.25;  // its logarithm
-  const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, fit.model);
-  if (fit.sd.size() != std::ssize(coordinates)) return false;
-  bool any = false;
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const Coordinate& one = coordinates[i];
-    if (!blocks[fit.model[one.member].block].IsSmoothFriction() || !one.is_log)
-      continue;
-    if (!(fit.sd[static_cast<Index>(i)] * one.unit < kKnown)) return false;
-    any = true;
-  }
-  return any;
-}
-
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
-                                                const ConvergedModel& found,
-                                                bool every_form) {
+                                                const ConvergedModel& found) {
   const bool rubs = std::ranges::any_of(found.fit.model, [&](const Member& member) {
     return beside.blocks[member.block].IsDryFriction();
   });
   if (!rubs || beside.is_over()) return std::nullopt;
-  const std::vector<Model> forms = OtherForms(beside, found, every_form);
+  const std::vector<Model> forms = OtherForms(beside, found);
   std::vector<std::optional<ConvergedModel>> followed(forms.size());
   ParallelForAll(static_cast<int>(forms.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);

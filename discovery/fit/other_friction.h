@@ -10,15 +10,9 @@
 
 namespace mjdiag {
 
-/// Whether the speed is known within which every friction comes, of which there is one.
-bool AreSpeedsKnown(const std::vector<Block>& blocks, const ModelFit& fit);
-
 /// The same model with its dry friction in the best of the other forms, fitted and with its
 /// noise anew; none if that is no better.
-/// @param every_form  else only what springs, for which a filter is quick: what sticks takes it
-///                    many times as long
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
-                                                const ConvergedModel& found,
-                                                bool every_form);
+                                                const ConvergedModel& found);
 
 }  // namespace mjdiag
