@@ -9,8 +9,8 @@
 // action: an arm whose friction is missing does not fall. Where a machine stands, swings,
 // falls or is held is the same case. Its first order is the tangent of the tick where the
 // estimate is (tick_differences.h), taken anew every 10 ms, in which a joint at 3 rad/s turns
-// by 30 mrad; whenever constraints switch; and at every tick along joints with effects, by the slopes of their
-// forces alone where they look at nothing but their own joint.
+// by 30 mrad; whenever constraints switch; and at every tick along joints with effects, by
+// the slopes of their forces alone where they look at nothing but their own joint.
 //
 // Readings are taken one by one (their noises are independent), so that
 //
