@@ -123,23 +123,6 @@ bool CanBeFollowed(const Setup& setup, const Record& measured) {
          std::ranges::all_of(setup.channels.actuators, has);
 }
 
-/// Standard deviation of what every sensor reads less its prediction over a tick, whatever
-/// it read: no reading is cut. What is cut leaves more that is not known, without end where
-/// a machine falls.
-VectorXd ExpectedInnovations(const FilterPath& path, const FilterNoise& noise) {
-  const Eigen::MatrixXd uncut = Eigen::MatrixXd::Ones(path.sensors(), path.samples());
-  VectorXd logarithm = VectorXd::Zero(path.sensors());
-  VectorXd taken = VectorXd::Zero(path.sensors());
-  LinearPass pass(path, noise);
-  pass.inflation = &uncut;
-  pass.at_reading = [&](Eigen::Index sensor, Eigen::Index, bool, double) {
-    logarithm[sensor] += 0.5 * std::log(pass.kalman.variance);
-    taken[sensor] += 1.0;
-  };
-  pass.Over(0, path.samples());
-  return (logarithm.array() / taken.array().max(1.0)).exp();
-}
-
 /// What is predicted over one tick.
 void PredictATick(const Machine& machine, const Record& measured,
                   const FilterPath& path, Comparison& result) {
@@ -151,7 +134,11 @@ void PredictATick(const Machine& machine, const Record& measured,
   FilterNoise noise = path.noise;
   noise.size *= 1e-9;
   noise.white *= 1e-9;
-  const VectorXd floors = ExpectedInnovations(path, noise);
+  // Whatever was read: what is cut leaves more that is not known, without end where a machine
+  // falls.
+  const Eigen::MatrixXd uncut = Eigen::MatrixXd::Ones(path.sensors(), path.samples());
+  const VectorXd floors =
+      Score(path, noise, 0, path.samples(), &uncut).variance.cwiseSqrt();
   const auto samples = static_cast<double>(measured.samples());
   Eigen::Index row = 0;
   for (const SensorSetup& sensor : machine.channels().sensors) {

@@ -30,11 +30,7 @@ Ticks TicksAlong(const Machine& machine, const MeasuredRun& run, const FilterPat
   const Index end = path.EndOf(record);
   const Machine during = DuringRecord(run.records[record], machine);
   TickMap map(during);
-  std::vector<Machine> pushing_then;
-  for (const Machine& other : pushing) {
-    pushing_then.push_back(DuringRecord(run.records[record], other));
-  }
-  map.TellPushesOf(pushing_then);
+  map.TellPushesOf(DuringRecord(run.records[record], pushing));
   RecordedInputs inputs(during, run);
   VectorXd forces = VectorXd::Zero(map.model().nv);
   const SharedBodies bodies(map, path);

@@ -88,11 +88,7 @@ VectorXd RunAlong(const Machine& machine, const MeasuredRun& run,
     const auto record = static_cast<std::size_t>(number);
     const Machine during = DuringRecord(run.records[record], machine);
     TickMap map(during);
-    std::vector<Machine> others_then;
-    for (const Machine& other : others) {
-      others_then.push_back(DuringRecord(run.records[record], other));
-    }
-    map.TellPushesOf(others_then);
+    map.TellPushesOf(DuringRecord(run.records[record], others));
     const mjModel& model = map.model();
     RecordedInputs inputs(during, run);
     PlantState state = map.Begun(path.starts[record].state);

@@ -78,11 +78,12 @@ std::vector<FilterGains> GainsAlong(const FilterPath& path, const FilterNoise& n
 }
 
 ReadingScores Score(const FilterPath& path, const FilterNoise& noise, Index first,
-                    Index count) {
+                    Index count, const MatrixXd* inflation) {
   const Index ny = path.sensors();
   ReadingScores scores{VectorXd::Zero(ny), VectorXd::Zero(ny)};
   VectorXd taken = VectorXd::Zero(ny);
   LinearPass pass(path, noise);
+  pass.inflation = inflation;
   pass.at_reading = [&](Index sensor, Index, bool, double deviance) {
     scores.deviance[sensor] += deviance;
     scores.variance[sensor] += std::log(pass.kalman.variance);

@@ -63,7 +63,9 @@ struct ReadingScores {
 };
 
 /// The same.
+/// @param inflation  as LinearPass::inflation
 ReadingScores Score(const FilterPath& path, const FilterNoise& noise,
-                    Eigen::Index first, Eigen::Index count);
+                    Eigen::Index first, Eigen::Index count,
+                    const Eigen::MatrixXd* inflation = nullptr);
 
 }  // namespace mjdiag

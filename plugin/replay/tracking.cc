@@ -162,6 +162,15 @@ Machine DuringRecord(const RecordStart& record, const Machine& machine) {
   return record.machine ? record.machine->ChangedAs(machine) : machine;
 }
 
+std::vector<Machine> DuringRecord(const RecordStart& record,
+                                  const std::vector<Machine>& machines) {
+  std::vector<Machine> during;
+  for (const Machine& machine : machines) {
+    during.push_back(DuringRecord(record, machine));
+  }
+  return during;
+}
+
 void ChooseSolver(mjModel& model) {
   const bool limited = std::any_of(model.jnt_limited, model.jnt_limited + model.njnt,
                                    [](mjtByte is) { return is != 0; }) ||

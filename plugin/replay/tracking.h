@@ -35,6 +35,8 @@ struct RecordStart {
 
 /// A machine as it was during a record.
 Machine DuringRecord(const RecordStart& record, const Machine& machine);
+std::vector<Machine> DuringRecord(const RecordStart& record,
+                                  const std::vector<Machine>& machines);
 
 /// What of measured records the replay needs, in the setup's order: one after the other,
 /// each from its own start.
