@@ -84,8 +84,10 @@ std::string Extend(const DiscoverCommand& command, const Machine& machine,
 
 void Discover(DiscoverCommand& command) {
   RequirePlantOfItsFile(command.machine);
-  const std::vector<std::string> drafted =
+  std::vector<std::string> drafted =
       DraftMachine(command.machine, FirstRecord(command.records));
+  std::ranges::copy(AdoptClock(command.machine, FirstRecord(command.records)),
+                    std::back_inserter(drafted));
   const Machine machine = LoadSubject(command.machine).nominal;
   const Measurements measurements =
       LoadMeasurements(command.records, command.machine, machine);
@@ -134,7 +136,9 @@ void AddDiscover(CLI::App& app) {
                    "Share of the record, from its start, that fits see")
       ->check(Within(kLeastShare, kMostShare));
   command
-      ->add_option("--causes", options->search.most_causes, "Most causes to look for")
+      ->add_option(
+          "--causes", options->search.most_causes,
+          "Most causes to look for; 8 for every degree of freedom if not given")
       ->check(CLI::Range(1, kMostCauses));
   // Bound to the variable itself, a flag that is not given would count as 0: no doubt.
   command->add_flag_function(

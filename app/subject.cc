@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "app/progress.h"
 #include "mjdiag/plugin/draft/setup_draft.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/plant/time_step.h"
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
@@ -181,6 +183,25 @@ Subject LoadSubject(const MachineOptions& options) {
     subject.machine = subject.machine.With({{}, {ParseEffect(text)}});
   }
   return subject;
+}
+
+std::vector<std::string> AdoptClock(MachineOptions& options,
+                                    const std::string& record) {
+  const Setup setup = ReadSetup(options.setup, options.overrides);
+  const double tick = setup.rates.tick();
+  Resampling resampling;
+  resampling.sample_time = tick;
+  resampling.own_clock = kNearStep;
+  const double own =
+      ReadMeasuredFile(record, setup.record, resampling).record.sample_time();
+  const double off = own / tick - 1.0;
+  if (std::abs(off) <= kSameClock) return {};
+  char rate[40];
+  std::snprintf(rate, sizeof rate, "%.17g", 1.0 / own);
+  options.overrides.push_back(std::string("rates.control=") + rate);
+  return {std::filesystem::path(record).filename().string() + ": the sample time is " +
+          FormatNumber(100.0 * std::abs(off), 2) +
+          " % off the control tick: its samples are taken as ticks"};
 }
 
 Record ReadMeasured(const Setup& setup, const std::string& file,

@@ -63,6 +63,10 @@ void AddMachineOrPlantOptions(CLI::App& command, MachineOptions& options);
 /// @return what was assumed, notes for people
 std::vector<std::string> DraftMachine(MachineOptions& options,
                                       const std::string& record);
+/// Where the clock of a record is even and a little off the control tick of the setup, its
+/// samples are ticks: what is resampled is smeared. Sets the rate that goes with them.
+/// @return notes for people
+std::vector<std::string> AdoptClock(MachineOptions& options, const std::string& record);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 /// `--seed`, a whole number from 0 on; CLI11 itself would take -1 for 2^64 - 1.
 void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& words);

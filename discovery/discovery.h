@@ -236,7 +236,7 @@ struct Discovery {
 
 struct DiscoverOptions {
   double train_share = 0.7;
-  int most_causes = 8;
+  std::optional<int> most_causes;  ///< none: 8 for every degree of freedom
   /// Numbers of the plant are not taken as true: they may be what is wrong, as far as they
   /// are not known beforehand (DoubtOf).
   bool doubt = false;

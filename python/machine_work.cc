@@ -89,8 +89,8 @@ DiscoveryObject DoDiscover(const MachineObject& machine, const py::object& recor
                            double budget, std::vector<std::string> only,
                            std::vector<std::string> without,
                            std::vector<std::string> known, std::optional<bool> doubt,
-                           int most_causes, double train_share, std::uint64_t seed,
-                           const py::object& progress) {
+                           std::optional<int> most_causes, double train_share,
+                           std::uint64_t seed, const py::object& progress) {
   DiscoverOptions options;
   options.budget = budget;
   options.choice.only = std::move(only);
@@ -166,7 +166,7 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            py::arg("budget") = 60.0, py::arg("only") = std::vector<std::string>(),
            py::arg("without") = std::vector<std::string>(),
            py::arg("known") = std::vector<std::string>(), py::arg("doubt") = py::none(),
-           py::arg("most_causes") = DiscoverOptions{}.most_causes,
+           py::arg("most_causes") = py::none(),
            py::arg("train_share") = DiscoverOptions{}.train_share, py::arg("seed") = 1,
            py::arg("progress") = py::none(),
            R"(
@@ -183,7 +183,7 @@ void BindMachineWork(py::class_<MachineObject>& machine) {
            known: numbers of the plant that are as it says.
            doubt: whether the others may be wrong; None: unless the plant says that it is
            exact.
-           most_causes: that are looked for.
+           most_causes: that are looked for; None: 8 for every degree of freedom.
            train_share: of a single record, that fits see.
            seed: of the noise floor.
            progress: as of simulate.

@@ -199,7 +199,8 @@ MeasuredFile RecordOfColumns(const MeasuredColumns& columns,
                          " rows are left out: their time is missing or not after that "
                          "of the row before");
   }
-  const SampleGrid grid = ChooseGrid(times, resampling.sample_time, columns.place);
+  const SampleGrid grid =
+      ChooseGrid(times, resampling.sample_time, columns.place, resampling.own_clock);
   file.record = Record(grid.time.sample_time, grid.time.start);
   if (!grid.IsOfFile()) file.notes.push_back(grid.note);
   if (const Gaps gaps = FindGaps(times); gaps.count > 0) {

@@ -15,7 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kSameRate = 1e-4;
 constexpr double kNearRate = 0.2;
 // Between a record of another rate and one whose times are in another unit, 1000 times.
 constexpr double kOtherUnit = 30.0;
@@ -105,14 +104,29 @@ double MeanHeld(const VectorXd& times, const VectorXd& x, double begin, double e
 }  // namespace
 
 SampleGrid ChooseGrid(const VectorXd& times, double sample_time,
-                      const std::function<std::string(Index)>& place) {
+                      const std::function<std::string(Index)>& place,
+                      double own_clock) {
   const std::optional<UniformTime> uniform = FindUniformTime(times, place);
   const Index last = times.size() - 1;
   const VectorXd intervals = times.tail(last) - times.head(last);
   const double usual = uniform ? uniform->sample_time : Median(intervals);
   const double ratio = usual / sample_time;
-  if (uniform && std::abs(ratio - 1.0) <= kSameRate) {
+  if (uniform && std::abs(ratio - 1.0) <= own_clock) {
     return {*uniform, times.size(), ""};
+  }
+  constexpr Index kFewest = 10;
+  for (Index first = 1; !uniform && first <= 2 && times.size() - first >= kFewest;
+       ++first) {
+    const auto others = FindUniformTime(times.tail(times.size() - first),
+                                        [&](Index k) { return place(k + first); });
+    if (!others || std::abs(others->sample_time / sample_time - 1.0) > own_clock) {
+      continue;
+    }
+    return {*others, times.size() - first,
+            first == 1
+                ? "the first sample, which is out of step with the others, is left out"
+                : "the first two samples, which are out of step with the others, "
+                  "are left out"};
   }
   if (ratio > kOtherUnit || ratio < 1.0 / kOtherUnit) {
     throw InputError(place(0),
@@ -133,7 +147,7 @@ SampleGrid ChooseGrid(const VectorXd& times, double sample_time,
   const double start = times[0] + sample_time * PhaseOf(times, sample_time);
   const double ticks = (times[last] - start) / sample_time;
   return {{start, sample_time},
-          static_cast<Index>(std::floor(ticks + kSameRate)) + 1,
+          static_cast<Index>(std::floor(ticks + kSameClock)) + 1,
           why + ": resampled to " + FormatQuantity(sample_time, "s")};
 }
 
@@ -141,7 +155,7 @@ VectorXd Resample(const VectorXd& times, const VectorXd& samples,
                   const SampleGrid& grid, Course course) {
   const double tick = grid.time.sample_time;
   // What is held changes at a sample, also where rounding puts that before or behind it.
-  const double rounding = kSameRate * tick;
+  const double rounding = kSameClock * tick;
   return VectorXd::NullaryExpr(grid.samples, [&](Index k) {
     const double time = grid.time.start + static_cast<double>(k) * tick;
     switch (course) {

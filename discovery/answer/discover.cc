@@ -100,7 +100,10 @@ ExplainOptions OptionsOfSearch(const Machine& machine, const DiscoverOptions& op
   search.seconds = time.SecondsOfSearch();
   search.choice = options.choice;
   search.numbers = UncertainParameters(machine, options);
-  search.most_causes = static_cast<std::size_t>(std::max(0, options.most_causes));
+  // What has more at one joint is no knowledge of it.
+  constexpr int kOfJoint = 8;
+  const int most = options.most_causes.value_or(kOfJoint * machine.plant().nv);
+  search.most_causes = static_cast<std::size_t>(std::max(0, most));
   search.stop = options.stop;
   search.progress = [&time](const std::string& text) {
     time.Say(text, time.FractionOfSearch());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -23,7 +24,8 @@ namespace {
 
 constexpr double kImpossible = std::numeric_limits<double>::infinity();
 constexpr int kFolds = 20;
-// Of what a move gains, what is of second order.
+// Of what a move gains, what is of second order. What resists is at nearly every joint, dry and
+// viscous at once: of it what is of second order of that is noise.
 constexpr double kShare = 0.03;
 
 /// A change of the model: terms that leave it, variations that come in.
@@ -94,8 +96,17 @@ class MoveSearch {
   bool MayCome(const Block& block) const;
   /// With what a group that comes in takes the place of.
   Change Completed(Change change) const;
-  Scored ScoreOf(const Change& change) const;
+  /// @param asks_folds  whether each of what comes in has to be worth its price
+  Scored ScoreOf(const Change& change, bool asks_folds = true) const;
   std::vector<Scored> ScoresOf(std::vector<Change> changes) const;
+  /// Further members come in at once as long as each brings a share of what the others do,
+  /// beside which what is of second order is little.
+  /// @param may  which blocks
+  void Extend(Scored& best, double share,
+              const std::function<bool(const Block&)>& may) const;
+  /// What resists a joint is dry and viscous: one of them alone makes up for the other. Both
+  /// come in where what the other costs is of second order; fits take out what is not there.
+  void CompleteResistances(Scored& best) const;
   void Keep(const std::vector<Scored>& scored);
 
   const Machine& machine_;
@@ -168,7 +179,6 @@ bool MoveSearch::MayCome(const Block& block) const {
   if (looked_.at_forces) {
     if (block.IsOfDrive() || block.GrowsWithLoad()) return false;
     if (looked_.inputs_are_noise && block.IsInertia()) return false;
-    if (block.IsSmoothFriction()) return true;
   }
   return looked_.at_every_shape || !block.IsResistance() || block.IsSimplest() ||
          any([&](const Block& in) { return in.resists == block.resists; });
@@ -267,7 +277,7 @@ double MoveSearch::SizesOf(const Change& change, const SetOfColumns& set,
   return sum;
 }
 
-MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
+MoveSearch::Scored MoveSearch::ScoreOf(const Change& change, bool asks_folds) const {
   Scored best;
   best.change = change;
   SetOfColumns set = ColumnsOf(change);
@@ -290,8 +300,8 @@ MoveSearch::Scored MoveSearch::ScoreOf(const Change& change) const {
     }
   }
   // Without a fit there are no amplitudes.
-  if (best.score < kImpossible &&
-      (!IsWithinBounds(change, best.fit.amplitudes) || !IsRepeated(change, best))) {
+  if (best.score < kImpossible && (!IsWithinBounds(change, best.fit.amplitudes) ||
+                                   (asks_folds && !IsRepeated(change, best)))) {
     best.score = kImpossible;
   }
   return best;
@@ -409,6 +419,41 @@ std::vector<Variation> MoveSearch::PromisingBehind(std::size_t noise,
                              [this](const Block& block) { return MayCome(block); });
 }
 
+void MoveSearch::Extend(Scored& best, double share,
+                        const std::function<bool(const Block&)>& may) const {
+  for (;;) {
+    std::vector<Change> changes;
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      if (may(blocks_[kept_[v].block]) && IsApart(best.change, v)) {
+        changes.push_back(With(best.change, v));
+      }
+    }
+    std::vector<Scored> further = ScoresOf(std::move(changes));
+    if (further.empty()) return;
+    const double least = std::max(kLeastGain, share * (moves_.score - best.score));
+    if (!(further.front().score < best.score - least)) return;
+    best = std::move(further.front());
+  }
+}
+
+void MoveSearch::CompleteResistances(Scored& best) const {
+  const Change found = best.change;
+  for (std::size_t v = 0; v < kept_.size(); ++v) {
+    const Block& block = blocks_[kept_[v].block];
+    if (!block.IsResistance() || !block.IsSimplest() || !IsApart(best.change, v)) {
+      continue;
+    }
+    if (std::ranges::none_of(found.added, [&](std::size_t other) {
+          return blocks_[kept_[other].block].resists == block.resists;
+        })) {
+      continue;
+    }
+    Scored whole = ScoreOf(Completed(With(best.change, v)), false);
+    const double gained = moves_.score - best.score;
+    if (whole.score < best.score + kShare * gained) best = std::move(whole);
+  }
+}
+
 Moves MoveSearch::Run() {
   Whiten();
   const Scored here = ScoreOf({});
@@ -432,20 +477,13 @@ Moves MoveSearch::Run() {
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
   std::ranges::sort(all, {}, &Scored::score);
-  // Six joints that rub are no six moves: further members come in at once as long as each
-  // brings a tenth of what the others do, beside which what is of second order is little.
-  while (!all.empty()) {
-    const Scored& best = all.front();
-    if (!(best.score < moves_.score)) break;
-    changes.clear();
-    for (std::size_t v = 0; v < kept_.size(); ++v) {
-      if (IsApart(best.change, v)) changes.push_back(With(best.change, v));
-    }
-    std::vector<Scored> further = ScoresOf(changes);
-    if (further.empty()) break;
-    const double gained = moves_.score - best.score;
-    if (!(further.front().score < best.score - kShare * gained)) break;
-    all.front() = std::move(further.front());
+  // Six joints that rub are no six moves.
+  if (!all.empty() && all.front().score < moves_.score) {
+    Extend(all.front(), kShare, [](const Block&) { return true; });
+    Extend(all.front(), kShare * kShare, [](const Block& block) {
+      return block.IsResistance() && block.IsSimplest();
+    });
+    CompleteResistances(all.front());
   }
   changes.clear();
   for (const std::vector<std::size_t>& removed : LeavingTogether()) {

@@ -72,6 +72,7 @@ std::string HingeUnit(const std::string& unit) {
       {"N/m", "N m/rad"},
       {"N/m^3", "N m/rad^3"},
       {"1/m", "1/rad"},
+      {"m/N", "rad/(N m)"},
       {"1/N", "1/N/m"},
       {"N/m^2", "N m/rad^2"},
       {"N s/m^2", "N m s/rad^2"},

@@ -40,6 +40,7 @@ SITES = {
     "command": "actuator",
     "reading": "sensor",
     "late reading": "sensor",
+    "wound reading": "sensor",
     "noise": "sensor",
 }  # others: joints
 
@@ -374,6 +375,11 @@ def encoder_drift(y, time, rate):
 @_law("late reading", 2)
 def encoder_delay(y, rate, delay):
     return y - delay * rate
+
+
+@_law("wound reading", 2)
+def transmission_windup(y, force, compliance):
+    return y + compliance * force
 
 
 # What does not act in a step: `prepare` moves zeros of hinges, and noise is that of the

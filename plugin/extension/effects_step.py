@@ -213,6 +213,7 @@ def passive(model, data):
     _damp(step, sited)
     _push(step, sited, memory)
     _bind(step, sited)
+    _wind(step, placed, memory)
     # What the drives give of other commands, beside what MuJoCo makes of those in ctrl.
     for motor in {law.id for law in placed if law.kind == "command"}:
         more = step.motor_force(motor) - step.motor_force(motor, data.ctrl[motor])
@@ -259,6 +260,14 @@ def _bind(step, sited):
         _set_bounds(data.iefc_type, data.iefc_id, data.iefc_frictionloss, bounds)
 
 
+def _wind(step, placed, memory):
+    for i, law in enumerate(placed):
+        if law.kind == "wound reading":
+            dof = step.model.jnt_dofadr[step.model.sensor_objid[law.id]]
+            memory.behind[i] = sum(step.arm(motor)[dof] * step.motor_force(motor)
+                                   for motor in range(step.model.nu))
+
+
 def _set_bounds(kinds, ids, friction, bounds):
     for dof, bound in bounds.items():
         friction[(np.asarray(kinds) == FRICTION_OF_DOF) & (np.asarray(ids) == dof)] = bound
@@ -296,11 +305,20 @@ def _rates(model, data, sensor):
     return [data.actuator_velocity[place]]
 
 
+def _wound(data, law):
+    """The force of the last step, of a law that needs it."""
+    memory = _memories.get(data)
+    if memory is None:
+        return 0.0
+    known = memory.behind if data.time > memory.time else memory.before
+    return known[law] or 0.0
+
+
 def distort(model, data):
     """The readings of all sensors, data.sensordata with the errors of encoders in it."""
     readings = np.array(data.sensordata, dtype=float)
-    for law in _prepared(model):
-        if law.kind not in ("reading", "late reading"):
+    for i, law in enumerate(_prepared(model)):
+        if law.kind not in ("reading", "late reading", "wound reading"):
             continue
         first, size = model.sensor_adr[law.id], model.sensor_dim[law.id]
         own = readings[first : first + size]
@@ -308,8 +326,11 @@ def distort(model, data):
             readings[first : first + size] = law.function(
                 own, np.asarray(_rates(model, data, law.id)), *law.values)
             continue
-        for i in range(size):
-            own[i] = law.function(float(own[i]), data.time, *law.values)
+        if law.kind == "wound reading":
+            readings[first] = law.function(readings[first], _wound(data, i), *law.values)
+            continue
+        for k in range(size):
+            own[k] = law.function(float(own[k]), data.time, *law.values)
     return readings
 
 

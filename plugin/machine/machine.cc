@@ -52,7 +52,7 @@ void ApplyCalibration(const Setup& setup, mjModel& model) {
 
 ModelPtr LoadPlant(const Setup& setup) {
   ModelPtr model = LoadModel(setup.plant);
-  CheckTimeStep(setup, *model);
+  AdoptTimeStep(setup, *model);
   PreparePlant(setup.physics, *model);
   if (setup.calibration) ApplyCalibration(setup, *model);
   return model;

@@ -103,6 +103,26 @@ TEST(ChosenGrid, IsWhereMostSamplesAre) {
   EXPECT_EQ(grid.samples, 100);
 }
 
+TEST(ChosenGrid, LeavesOutAFirstSampleThatIsOutOfStepAndKeepsTheOthers) {
+  VectorXd times(101);
+  times << 0.0, VectorXd::LinSpaced(100, 0.3 * kTick, 99.3 * kTick);
+  const SampleGrid grid = Choose(times);
+  EXPECT_THAT(grid.note, HasSubstr("the first sample, which is out of step"));
+  const VectorXd x = VectorXd::LinSpaced(101, 0.0, 100.0).cwiseAbs2();
+  for (const Course course : {Course::kSmooth, Course::kHeld}) {
+    EXPECT_LT((Resample(times, x, grid, course) - x.tail(100)).cwiseAbs().maxCoeff(),
+              1e-9);
+  }
+}
+
+TEST(ChosenGrid, IsThatOfAClockOfTheFilesOwnIfItIsToBeKept) {
+  const VectorXd times = VectorXd::LinSpaced(1001, 0.0, 1.002);
+  const SampleGrid grid = ChooseGrid(times, kTick, RowOf, 0.01);
+  EXPECT_TRUE(grid.IsOfFile());
+  EXPECT_NEAR(grid.time.sample_time, 1.002 * kTick, 1e-12);
+  EXPECT_FALSE(ChooseGrid(times, kTick, RowOf, 0.001).IsOfFile());
+}
+
 TEST(ChosenGrid, RefusesTimesInAnotherUnit) {
   EXPECT_THAT([] { Choose(1000.0 * Jittered(200, 0.2)); },
               ThrowsMessage<InputError>(

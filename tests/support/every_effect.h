@@ -58,7 +58,8 @@ inline const std::vector<std::string>& EveryEffectOfAb383() {
        "encoder_scale@x_encoder:factor=1.00013",
        "encoder_periodic_error@y_encoder:amplitude=3.1e-8,period=2e-5",
        "encoder_drift@z_encoder:rate=1.7e-5",
-       "encoder_delay@y_encoder:delay=1.3e-5"},
+       "encoder_delay@y_encoder:delay=1.3e-5",
+       "transmission_windup@z_encoder:compliance=1.3e-4"},
       {.stroke = 4e-3, .speed = 0.3, .force = 250.0, .mass = 1.0, .duration = 1.0},
       {"X", "r2", "x_motor", "x_encoder", "Z"});
   return effects;
@@ -99,7 +100,8 @@ inline const std::vector<std::string>& EveryEffectOfEmps() {
            "encoder_scale@load_encoder:factor=1.00013",
            "encoder_periodic_error@load_encoder:amplitude=3.1e-6,period=2e-3",
            "encoder_drift@load_encoder:rate=1.7e-5",
-           "encoder_delay@load_encoder:delay=1.3e-4"},
+           "encoder_delay@load_encoder:delay=1.3e-4",
+           "transmission_windup@load_encoder:compliance=1.3e-6"},
           {.stroke = 0.2, .speed = 0.2, .force = 2.0, .mass = 95.0, .duration = 1.0},
           // Nothing in EMPS is held by a spring, and nothing turns.
           {"load", "", "drive", "load_encoder", ""}),

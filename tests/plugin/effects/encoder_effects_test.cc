@@ -46,6 +46,36 @@ TEST(EncoderEffects, DelayReadsWhereTheMachineWasAMomentAgo) {
   EXPECT_EQ(readings[0], 0.2 - 0.004 * 0.25);
 }
 
+// The command of a tick acts behind its reading: what is read is wound up by the one before.
+TEST(EncoderEffects, WindupReadsWhatTheForceOfTheLastStepMakesOfItsTransmission) {
+  const Machine emps(Emps());
+  const DataPtr data = MakeData(emps.plant());
+  ActiveEffects effects(
+      emps.channels(), emps.plant(),
+      {ParseEffect("transmission_windup@load_encoder:compliance=2e-6")});
+  mj_fwdPosition(&emps.plant(), data.get());
+  mj_fwdVelocity(&emps.plant(), data.get());
+  const auto read = [&] {
+    std::array<double, 1> readings{0.2};
+    effects.Distort(emps.plant(), *data, readings, 0.0);
+    return readings[0];
+  };
+  EXPECT_EQ(read(), 0.2);
+  data->ctrl[0] = 1.5;
+  EXPECT_EQ(read(), 0.2);
+  effects.Act(emps.plant(), *data);
+  mj_fwdActuation(&emps.plant(), data.get());
+  EXPECT_NEAR(read(), 0.2 + 2e-6 * data->qfrc_actuator[0], 1e-15);
+  EXPECT_GT(read(), 0.2);
+}
+
+TEST(EncoderEffects, WindupIsOfTheEncoderOfAJoint) {
+  const Machine bonder = test::Bonder();
+  EXPECT_THROW(ActiveEffects(bonder.channels(), bonder.plant(),
+                             {ParseEffect("transmission_windup@x_encoder:compliance=1")}),
+               InputError);
+}
+
 // Its encoders are sites on moving scales: what is read a moment later is what the rate says.
 TEST(EncoderEffects, DelayOfAFrameReadsWhereItWasInItsReference) {
   const Machine bonder = test::Bonder();

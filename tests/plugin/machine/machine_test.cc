@@ -197,6 +197,14 @@ TEST(Machine, RefusesATimeStepThatDoesNotFitTheRates) {
               AllOf(HasSubstr("time step 200.0"), HasSubstr("250.0")));
 }
 
+// A record has a clock of its own; the time step of a plant has as many digits as it has.
+TEST(Machine, TakesTheTimeStepOfTheRatesWhereItIsNearly) {
+  const Machine nearly(
+      ReadSetup(MJDIAG_SOURCE_DIR "/mjcf/emps", {"rates.control=1001"}));
+  EXPECT_EQ(nearly.plant().opt.timestep, nearly.setup().rates.step());
+  EXPECT_NEAR(nearly.plant().opt.timestep, 199.8e-6, 1e-9);
+}
+
 /// The stage of mjcf/emps with its MJCF changed.
 Machine StageWith(const std::string& from, const std::string& to) {
   const std::filesystem::path stage = MJDIAG_SOURCE_DIR "/mjcf/emps";
