@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mjdiag/diagnosis/statistics/distributions.h"
+#include "mjdiag/discovery/blocks/curve_block.h"
 #include "mjdiag/discovery/fit/tick_columns.h"
 #include "mjdiag/plugin/effects/number_forces.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
@@ -163,8 +164,53 @@ Around AroundOf(const AnswerData& data, const Model& model,
   return around;
 }
 
+/// The force of an effect at the speed of its joint; of one with a memory where it slides, by
+/// what it becomes at an end of its parameters. None where it takes more than the speed.
+std::optional<double> LawAt(PlacedEffect effect, double speed) {
+  constexpr int kMost = 4;
+  for (int k = 0; k < kMost; ++k) {
+    if (effect.effect->variable() == LawVariable::kVelocity) {
+      if (const auto force = effect.effect->Law(speed, effect.values)) return force;
+    }
+    auto simpler = effect.effect->Simpler(effect);
+    if (!simpler) return std::nullopt;
+    effect = *std::move(simpler);
+  }
+  return std::nullopt;
+}
+
+/// What members take at every speed where all of them are laws of the speed alone.
+std::optional<VectorXd> ResistanceByLaws(const AnswerData& data, const Model& members,
+                                         const VectorXd& speed) {
+  const Changes changes = ChangesOfModel(data.blocks, members);
+  if (!changes.faults.empty()) return std::nullopt;
+  VectorXd force = VectorXd::Zero(speed.size());
+  for (const PlacedEffect& effect : changes.effects) {
+    for (Index i = 0; i < speed.size(); ++i) {
+      const auto one = LawAt(effect, speed[i]);
+      if (!one) return std::nullopt;
+      force[i] -= *one;
+    }
+  }
+  const mjModel& plant = data.machine.plant();
+  for (const auto& [number, factor] : changes.numbers) {
+    const int of =
+        ElementOf(number.kind) == mjOBJ_JOINT ? plant.jnt_dofadr[number.element] : -1;
+    if (number.kind == ModelParameterKind::kDamping) {
+      force += (factor - 1.0) * plant.dof_damping[of] * speed;
+    } else if (number.kind == ModelParameterKind::kFriction) {
+      force.array() +=
+          (factor - 1.0) * plant.dof_frictionloss[of] * speed.array().sign();
+    } else {
+      return std::nullopt;
+    }
+  }
+  return force;
+}
+
 /// Of a slide or a hinge that a block resists; none of anything else.
 std::optional<Index> ResistedDof(const mjModel& plant, const Block& block) {
+  if (IsOverOwnVelocity(block)) return block.candidate->joint;
   if (block.resists.empty()) return std::nullopt;
   if (block.number && ElementOf(block.number->kind) != mjOBJ_JOINT) return std::nullopt;
   const int joint =
@@ -172,6 +218,65 @@ std::optional<Index> ResistedDof(const mjModel& plant, const Block& block) {
   const int type = plant.jnt_type[joint];
   if (type != mjJNT_SLIDE && type != mjJNT_HINGE) return std::nullopt;
   return plant.jnt_dofadr[joint];
+}
+
+/// What CurveOf says of the members, and its slopes by their coordinates.
+struct Curve {
+  VectorXd value;
+  MatrixXd slopes;
+  std::vector<Index> coordinates;
+};
+
+std::optional<Curve> CurveByLaws(const AnswerData& data, const Model& model,
+                                 const std::set<std::size_t>& members,
+                                 const Moving& moving, const CurveOf& curve_of) {
+  const auto of_members = [&](const Model& one) -> std::optional<VectorXd> {
+    Model only;
+    for (const std::size_t m : members) only.push_back(one[m]);
+    const auto force = ResistanceByLaws(data, only, moving.speed);
+    if (!force) return std::nullopt;
+    return curve_of(*force);
+  };
+  const auto value = of_members(model);
+  if (!value) return std::nullopt;
+  Curve curve{*value, {}, {}};
+  const auto coordinates = CoordinatesOf(data.blocks, model);
+  const VectorXd x = Place(coordinates, model);
+  for (Index i = 0; i < x.size(); ++i) {
+    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
+    if (!members.contains(one.member)) continue;
+    const double step = one.Step(x[i]);
+    VectorXd moved = x;
+    moved[i] += step;
+    const auto there = of_members(At(coordinates, model, moved));
+    if (!there) return std::nullopt;
+    curve.coordinates.push_back(i);
+    curve.slopes.conservativeResize(value->size(), std::ssize(curve.coordinates));
+    curve.slopes.rightCols(1) = (*there - *value) / step;
+  }
+  return curve;
+}
+
+/// By what the machine does more without them in every tick.
+Curve CurveByTicks(const AnswerData& data, const ModelOnRuns& answer, Index dof,
+                   const std::set<std::size_t>& members, const Moving& moving,
+                   const CurveOf& curve_of) {
+  const Model& model = answer.fit.model;
+  const FilterPath& path = answer.seen;
+  const Around around = AroundOf(data, model, members);
+  const Machine machine = data.With(model);
+  const std::vector<Column> columns =
+      TickColumns(machine, data.run.seen, path, around.machines);
+  const MatrixXd masses = MassesAt(machine.plant(), path, dof, moving);
+  const auto of_column = [&](const Column& column) {
+    return curve_of(ForceAt(column, masses, path.sample_time, moving));
+  };
+  Curve curve{of_column(columns.front()), {}, around.coordinates};
+  curve.slopes.resize(curve.value.size(), std::ssize(around.coordinates));
+  for (Index i = 0; i < curve.slopes.cols(); ++i) {
+    curve.slopes.col(i) = -of_column(columns[static_cast<std::size_t>(i) + 1]);
+  }
+  return curve;
 }
 
 FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
@@ -188,25 +293,15 @@ FoundResistance ResistanceOf(const AnswerData& data, const ModelOnRuns& answer,
   if (moving.speed.size() < 10 * kSpeeds) return found;
   found.speeds = SpeedsOf(moving);
   const Model& model = answer.fit.model;
-  const Around around = AroundOf(data, model, members);
-  const Machine machine = data.With(model);
-  const std::vector<Column> columns =
-      TickColumns(machine, data.run.seen, path, around.machines);
   const CurveOf curve_of(moving, found.speeds);
-  const MatrixXd masses = MassesAt(machine.plant(), path, dof, moving);
-  const auto curve = [&](const Column& column) {
-    return curve_of(ForceAt(column, masses, path.sample_time, moving));
-  };
-  // What the machine does more without them is what they take.
-  const VectorXd value = curve(columns.front());
-  MatrixXd slopes(value.size(), std::ssize(around.coordinates));
-  for (Index i = 0; i < slopes.cols(); ++i) {
-    slopes.col(i) = -curve(columns[static_cast<std::size_t>(i) + 1]);
+  std::optional<Curve> curve = CurveByLaws(data, model, members, moving, curve_of);
+  if (!curve) {
+    curve = CurveByTicks(data, answer, dof, members, moving, curve_of);
   }
-  const VectorXd sd = errors.sd(around.coordinates);
+  const auto& [value, slopes, coordinates] = *curve;
+  const VectorXd sd = errors.sd(coordinates);
   const MatrixXd covariance =
-      sd.asDiagonal() * errors.correlation(around.coordinates, around.coordinates) *
-      sd.asDiagonal();
+      sd.asDiagonal() * errors.correlation(coordinates, coordinates) * sd.asDiagonal();
   const VectorXd half =
       TwoSidedNormalQuantile(0.05) *
       (slopes * covariance * slopes.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();

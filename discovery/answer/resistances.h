@@ -6,6 +6,7 @@
 //
 //   R(k) = (M(q) dv(k))_j / h,
 //
+// or, where all of them are laws of that velocity alone, what these say where the joint slides;
 // and by least squares along the motion R = dry sign(v) + viscous v + offset: what people put
 // into a controller. Intervals by first order from those of the answer.
 

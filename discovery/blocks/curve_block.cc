@@ -138,6 +138,24 @@ bool IsCurve(const Candidate& candidate) {
   return candidate.effect.get() == &ForceCurve();
 }
 
+bool IsCurve(const Block& block) {
+  return block.candidate && IsCurve(*block.candidate);
+}
+
+bool IsOverOwnVelocity(const Block& block) {
+  if (!IsCurve(block)) return false;
+  const VectorXd& chosen = block.candidate->chosen;
+  return chosen[force_curve::kVariable] ==
+             static_cast<double>(CurveVariable::kVelocity) &&
+         chosen[force_curve::kFactor] == static_cast<double>(CurveFactor::kNone) &&
+         static_cast<Index>(chosen[force_curve::kOf]) == block.candidate->joint;
+}
+
+bool IsCurveOf(const Block& curve, const Block& named) {
+  return IsOverOwnVelocity(curve) && !IsCurve(named) && !named.resists.empty() &&
+         curve.candidate->site == named.resists;
+}
+
 CandidateRegressor RegressorOfCurve(const SiteMotion& at, const Candidate& candidate) {
   const CurveAxis axis = CurveAxisOf(candidate.chosen);
   const VectorXd x = CourseOf(candidate, at.motion);

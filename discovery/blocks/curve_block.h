@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/blocks/block.h"
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/effects/candidate_regressor.h"
 #include "mjdiag/plugin/effects/kind.h"
@@ -28,6 +29,11 @@ std::vector<Candidate> CurveCandidates(const Machine& machine,
 Eigen::MatrixXd WhiteningOfKnots(const Candidate& curve);
 
 bool IsCurve(const Candidate& candidate);
+bool IsCurve(const Block& block);
+/// A curve over how fast its own joint is.
+bool IsOverOwnVelocity(const Block& block);
+/// Whether a curve can be what a resistance with a name is: that one stays beside it.
+bool IsCurveOf(const Block& curve, const Block& named);
 
 /// The force of every knot along the motion.
 CandidateRegressor RegressorOfCurve(const SiteMotion& at, const Candidate& candidate);

@@ -13,6 +13,7 @@
 #include "mjdiag/discovery/fit/first_look.h"
 #include "mjdiag/discovery/fit/input_choice.h"
 #include "mjdiag/discovery/fit/other_friction.h"
+#include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/hypotheses/candidate_bounds.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/discovery/regression/whitenings.h"
@@ -92,7 +93,11 @@ void ModelSearch::ChooseFriction() {
   }
   if (AreNear(rubs, asked_forms_of_, kAlike)) return;
   asked_forms_of_ = rubs;
-  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path});
+  constexpr double kRuns = 200.0;  // that a fit of every form takes, about
+  constexpr double kShareOfTime = 0.15;
+  const bool has_time =
+      kRuns * seconds_of_run_ < kShareOfTime * (seconds_ - time_.Seconds());
+  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, has_time);
   if (!other) return;
   Say("joints that stand: " + Difference(other->score()) + "  " +
       ModelText(found_.blocks, other->fit.model));
@@ -246,10 +251,15 @@ Explained ModelSearch::Run() {
       hopeless_.clear();
       StepOn();
     }
-    // What is left may have a shape that shows beside nothing simple, or no name.
+    // What is left may have a shape that shows beside nothing simple, and then no name.
     if (!IsOver()) {
-      if (options_.choice.only.empty()) AddCurves();
       at_every_shape_ = true;
+      looks_at_forces_ = true;
+      StepOn();
+    }
+    if (!IsOver() && options_.choice.only.empty()) {
+      AddCurves();
+      standing_.reset();
       looks_at_forces_ = true;
       StepOn();
     }
@@ -257,6 +267,7 @@ Explained ModelSearch::Run() {
     // A machine that diverges beside what is measured, or the wish to end: what was found
     // until then stays.
   }
+  found_.fit = WithoutIdle(found_.blocks, std::move(found_.fit));
   found_.steps = steps_;
   found_.is_cut_short = IsOver();
   return std::move(found_);

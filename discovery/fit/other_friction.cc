@@ -81,13 +81,50 @@ std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
 
 }  // namespace
 
+namespace {
+
+/// Where there is time, forms are compared as they are fitted: that which breaks away at
+/// another speed than the law in its place knows is nowhere near before.
+std::vector<std::optional<ConvergedModel>> Fitted(const ConvergedBeside& beside,
+                                                  const std::vector<Model>& forms,
+                                                  const ConvergedModel& found) {
+  const KeptGains gains = KeepGains(found.path);
+  std::vector<ModelFit> fits;
+  for (const Model& form : forms) {
+    try {
+      fits.push_back(FitModel(beside.machine_with, beside.run, found.path, gains,
+                              beside.blocks, form, 0));
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  }
+  // Each may come out best.
+  const double hoped = std::max(kLeastGain, std::abs(found.score()));
+  auto settled =
+      SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(), hoped);
+  for (auto& one : settled) {
+    if (one && one->score() > found.score() - kLeastGain) one.reset();
+  }
+  return settled;
+}
+
+}  // namespace
+
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
-                                                const ConvergedModel& found) {
+                                                const ConvergedModel& found,
+                                                bool has_time) {
   const bool rubs = std::ranges::any_of(found.fit.model, [&](const Member& member) {
     return beside.blocks[member.block].IsDryFriction();
   });
   if (!rubs || beside.is_over()) return std::nullopt;
   const std::vector<Model> forms = OtherForms(beside, found);
+  if (has_time) {
+    std::optional<ConvergedModel> best;
+    for (auto& one : Fitted(beside, forms, found)) {
+      if (one && (!best || one->score() < best->score())) best = std::move(one);
+    }
+    return best;
+  }
   std::vector<std::optional<ConvergedModel>> followed(forms.size());
   ParallelForAll(static_cast<int>(forms.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);

@@ -12,7 +12,9 @@ namespace mjdiag {
 
 /// The same model with its dry friction in the best of the other forms, fitted and with its
 /// noise anew; none if that is no better.
+/// @param has_time  for a fit of each before they are compared
 std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
-                                                const ConvergedModel& found);
+                                                const ConvergedModel& found,
+                                                bool has_time);
 
 }  // namespace mjdiag

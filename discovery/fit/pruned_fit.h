@@ -9,8 +9,13 @@
 
 namespace mjdiag {
 
+/// Without members of no size at all, which change nothing: there is nothing to fit.
+ModelFit WithoutIdle(const std::vector<Block>& blocks, ModelFit fit);
+
 using FitOf = std::function<ModelFit(const Model& start)>;
 
+/// A resistance that has a name is not taken out beside a curve without one over the same
+/// velocity, which can be anything.
 /// @param fit_of  fits anew without one
 ModelFit Pruned(const std::vector<Block>& blocks, ModelFit fit, const FitOf& fit_of);
 

@@ -68,7 +68,13 @@ class MoveSearch {
   SetOfColumns ColumnsOf(const Change& change) const;
   /// Errors of readings do no force: where forces are looked at, nothing is known of them.
   bool MayLeave(std::size_t term) const {
-    return !looked_.at_forces || !terms_[term].removed.states.empty();
+    return !IsBesideItsCurve(term) &&
+           (!looked_.at_forces || !terms_[term].removed.states.empty());
+  }
+  bool IsBesideItsCurve(std::size_t term) const {
+    return std::ranges::any_of(terms_, [&](const Term& other) {
+      return IsCurveOf(blocks_[other.block], blocks_[terms_[term].block]);
+    });
   }
   /// Terms that may leave for one that comes in.
   std::vector<std::vector<std::size_t>> LeavingTogether() const;
@@ -144,15 +150,15 @@ void MoveSearch::Whiten() {
 
 bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
   const Block& block = blocks_[kept_[variation].block];
-  const auto is_curve = [&](std::size_t v) {
-    const Block& one = blocks_[kept_[v].block];
-    return one.candidate && IsCurve(*one.candidate);
-  };
+  const auto is_curve = [&](std::size_t v) { return IsCurve(blocks_[kept_[v].block]); };
   // A force without a name is all that is left, or there is a name for it.
-  if (!change.added.empty() &&
-      (is_curve(variation) || std::ranges::any_of(change.added, is_curve))) {
+  if (is_curve(variation) &&
+      !(change.added.empty() && std::ranges::all_of(change.removed, [&](std::size_t t) {
+          return IsCurve(blocks_[terms_[t].block]);
+        }))) {
     return false;
   }
+  if (std::ranges::any_of(change.added, is_curve)) return false;
   return std::ranges::none_of(change.added, [&](std::size_t v) {
     // Two of one block are two waves; of anything else two points of its grid.
     return v == variation ||
@@ -488,7 +494,9 @@ Moves MoveSearch::Run() {
   changes.clear();
   for (const std::vector<std::size_t>& removed : LeavingTogether()) {
     if (removed.size() == 1) changes.push_back({removed, {}});
-    for (std::size_t v = 0; v < kept_.size(); ++v) changes.push_back({removed, {v}});
+    for (std::size_t v = 0; v < kept_.size(); ++v) {
+      if (IsApart({removed, {}}, v)) changes.push_back({removed, {v}});
+    }
   }
   std::ranges::move(ScoresOf(changes), std::back_inserter(all));
   std::ranges::sort(all, {}, &Scored::score);

@@ -81,7 +81,15 @@ std::vector<Index> ToldJoints(const MechanicalModel& model) {
 SiteMap::SiteMap(const mjModel& plant, const MechanicalModel& model,
                  const Channels& channels, bool with_seen)
     : plant_(plant), model_(model), channels_(channels), driven_(DrivenJoints(model)) {
-  if (with_seen) std::ranges::copy(ToldJoints(model), std::back_inserter(driven_));
+  if (with_seen) {
+    std::ranges::copy(ToldJoints(model), std::back_inserter(driven_));
+    // A load behind a shaft: nothing reads it, but it moves as far as what drives it.
+    for (Index dof = 0; dof < plant.nv; ++dof) {
+      if (IsScalar(plant, dof) && plant.jnt_stiffness[plant.dof_jntid[dof]] == 0.0) {
+        driven_.push_back(dof);
+      }
+    }
+  }
   driven_ = Unique(std::move(driven_));
 }
 

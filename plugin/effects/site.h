@@ -34,8 +34,8 @@ std::vector<Eigen::Index> ToldJoints(const MechanicalModel& model);
 /// A machine as effects look for their sites on it. Does not own what it is made of.
 class SiteMap {
  public:
-  /// @param with_seen  joints that sensors see count as driven: what hangs on a machine rubs
-  ///                   too
+  /// @param with_seen  joints that sensors see count as driven, and those that no spring of
+  ///                   their own holds: what hangs on a machine rubs too
   SiteMap(const mjModel& plant, const MechanicalModel& model, const Channels& channels,
           bool with_seen = false);
 
