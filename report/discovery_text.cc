@@ -90,7 +90,12 @@ std::string ForceLeftText(const Discovery& discovery) {
 }
 
 std::string RestText(const Discovery& discovery) {
+  // Beside "to 40 times the noise floor" noise explains nothing.
+  constexpr double kNoise = 2.0;
   const std::string left = ForceLeftText(discovery);
+  const std::optional<double> times =
+      TimesFloor(discovery.mismatch_after.validation, discovery.noise_floor);
+  if (left.empty() && times && *times > kNoise) return "";
   return left.empty() ? " Noise explains the rest." : " Little is left" + left + ".";
 }
 

@@ -124,8 +124,8 @@ class ModelSearch {
   bool MayHave(const Model& model) const {
     return std::ranges::all_of(model, [&](const Member& member) {
       const Block& block = found_.blocks[member.block];
-      return IsAllowed(block, member.values) &&
-             (may_be_at_ends_ || !HasActiveBound(block, member.values));
+      return IsAllowed(block, member.values) && ((may_be_at_ends_ && !block.number) ||
+                                                 !HasActiveBound(block, member.values));
     });
   }
   bool IsOne(const Model& model) const {
@@ -183,7 +183,7 @@ class ModelSearch {
   bool looks_at_forces_ = true;
   /// What is simple comes first, too.
   bool at_every_shape_ = false;
-  /// And what makes up for another thing comes last.
+  /// And what makes up for another thing comes last; of a number of the plant it never does.
   bool may_be_at_ends_ = false;
   /// Values and noises are asked to the end.
   bool is_last_ = false;

@@ -109,8 +109,11 @@ void BoundSprings(std::vector<Candidate>& candidates, const Machine& machine,
   constexpr double kOfNyquist = 0.5;
   const double fastest = kOfNyquist * std::numbers::pi / sample_time;
   for (Candidate& candidate : candidates) {
-    if (candidate.effect.get() != &PreslidingHysteresis()) continue;
     const double mass = machine.mechanics().M(candidate.joint, candidate.joint);
+    if (candidate.effect.get() == &TransmissionWindup()) {
+      candidate.parameters.front().least_size = 0.5 * sample_time * sample_time / mass;
+    }
+    if (candidate.effect.get() != &PreslidingHysteresis()) continue;
     FitParameter& stiffness = candidate.parameters.back();
     stiffness.upper = std::min(stiffness.upper, mass * fastest * fastest);
   }

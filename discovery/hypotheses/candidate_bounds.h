@@ -21,7 +21,8 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
                    const ObservedMotion& motion);
 
 /// What springs before it slides has no damper there: a frequency above half of what samples
-/// tell (Nyquist) is one that neither a record nor a filter follows.
+/// tell (Nyquist) is one that neither a record nor a filter follows. What a transmission gives is
+/// more than how far its force moves the joint within a tick: less is when exactly it acts.
 void BoundSprings(std::vector<Candidate>& candidates, const Machine& machine,
                   double sample_time);
 

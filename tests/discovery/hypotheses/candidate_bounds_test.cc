@@ -56,6 +56,16 @@ TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
               1e-3 * kStep);
 }
 
+TEST(BoundSprings, LeavesNoWindupThatATickHides) {
+  const test::Stage stage;
+  auto candidates = ListCandidates(stage.machine);
+  BoundSprings(candidates, stage.machine, 1e-3);
+  EXPECT_DOUBLE_EQ(
+      Parameter(candidates, "transmission_windup@load_encoder", "compliance")
+          .least_size,
+      0.5e-6 / stage.machine.mechanics().M(0, 0));
+}
+
 // Encoders of 20 nm see no play that is less, and none in a mount that moves no further.
 TEST(BoundPlays, LeavesNoneThatNoReadingWouldSee) {
   const Machine bonder = test::Bonder();

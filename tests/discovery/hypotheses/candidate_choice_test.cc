@@ -5,6 +5,7 @@
 
 #include "mjdiag/plugin/effects/effect.h"
 #include "mjdiag/signals/error.h"
+#include "support/any_machine.h"
 #include "support/message_of.h"
 #include "support/stage.h"
 
@@ -81,6 +82,31 @@ TEST_F(CandidateChoice, RefusesANameThatMeansNothingAndSaysWhatThereIs) {
 
 TEST_F(CandidateChoice, RefusesAChoiceThatLeavesNothing) {
   EXPECT_THAT(Refused({"eta"}, {"drive"}), HasSubstr("leave no cause"));
+}
+
+// Nothing drives it, nothing reads it and no spring of its own holds it.
+TEST(Candidates, AreAlsoAtALoadBehindAShaft) {
+  const Machine pair = test::MachineOf(
+      R"(<mujoco><option timestep="0.001" gravity="0 0 0"/><worldbody>
+         <body><joint name="motor" axis="0 0 1"/>
+         <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body>
+         <body><joint name="load" axis="0 0 1"/>
+         <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody>
+         <tendon><fixed name="shaft" stiffness="100"><joint joint="motor" coef="1"/>
+         <joint joint="load" coef="-1"/></fixed></tendon>
+         <actuator><motor name="u" joint="motor"/></actuator>
+         <sensor><jointpos name="y" joint="motor"/></sensor></mujoco>)",
+      "[rates]\ncontrol = 1000.0\n[sensors.y]\nelement = \"y\"\nunit = \"rad\"\n"
+      "[actuators.u]\nelement = \"u\"\nunit = \"N m\"\n");
+  const auto names = [&](bool with_seen) {
+    std::vector<std::string> all;
+    for (const Candidate& one : ChooseCandidates(pair, {}, with_seen)) {
+      all.push_back(CandidateName(one));
+    }
+    return all;
+  };
+  EXPECT_THAT(names(true), Contains("coulomb_friction@load"));
+  EXPECT_THAT(names(false), Not(Contains("coulomb_friction@load")));
 }
 
 }  // namespace

@@ -71,9 +71,10 @@ TEST(EncoderEffects, WindupReadsWhatTheForceOfTheLastStepMakesOfItsTransmission)
 
 TEST(EncoderEffects, WindupIsOfTheEncoderOfAJoint) {
   const Machine bonder = test::Bonder();
-  EXPECT_THROW(ActiveEffects(bonder.channels(), bonder.plant(),
-                             {ParseEffect("transmission_windup@x_encoder:compliance=1")}),
-               InputError);
+  EXPECT_THROW(
+      ActiveEffects(bonder.channels(), bonder.plant(),
+                    {ParseEffect("transmission_windup@x_encoder:compliance=1")}),
+      InputError);
 }
 
 // Its encoders are sites on moving scales: what is read a moment later is what the rate says.
