@@ -83,6 +83,18 @@ std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
 
 namespace {
 
+Index ValuesIn(const Model& model) {
+  Index values = 0;
+  for (const Member& member : model) values += member.values.size();
+  return values;
+}
+
+/// What says more has to be worth a claim: beside what is still missing a shape is worth some
+/// units.
+double WithClaims(const ConvergedModel& one) {
+  return one.score() + kClaim * static_cast<double>(ValuesIn(one.fit.model));
+}
+
 /// Where there is time, forms are compared as they are fitted: that which breaks away at
 /// another speed than the law in its place knows is nowhere near before.
 std::vector<std::optional<ConvergedModel>> Fitted(const ConvergedBeside& beside,
@@ -103,7 +115,7 @@ std::vector<std::optional<ConvergedModel>> Fitted(const ConvergedBeside& beside,
   auto settled =
       SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(), hoped);
   for (auto& one : settled) {
-    if (one && one->score() > found.score() - kLeastGain) one.reset();
+    if (one && WithClaims(*one) > WithClaims(found) - kLeastGain) one.reset();
   }
   return settled;
 }
@@ -121,7 +133,7 @@ std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
   if (has_time) {
     std::optional<ConvergedModel> best;
     for (auto& one : Fitted(beside, forms, found)) {
-      if (one && (!best || one->score() < best->score())) best = std::move(one);
+      if (one && (!best || WithClaims(*one) < WithClaims(*best))) best = std::move(one);
     }
     return best;
   }
