@@ -192,8 +192,12 @@ std::vector<std::string> AdoptClock(MachineOptions& options,
   Resampling resampling;
   resampling.sample_time = tick;
   resampling.own_clock = kNearStep;
-  const double own =
-      ReadMeasuredFile(record, setup.record, resampling).record.sample_time();
+  double own = tick;
+  try {
+    own = ReadMeasuredFile(record, setup.record, resampling).record.sample_time();
+  } catch (const InputError&) {
+    return {};  // who reads it says so, with what a manifest says of it
+  }
   const double off = own / tick - 1.0;
   if (std::abs(off) <= kSameClock) return {};
   char rate[40];

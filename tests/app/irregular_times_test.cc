@@ -113,5 +113,26 @@ TEST_F(IrregularTimes, WithALongGapAreRead) {
   EXPECT_THAT(result.out, HasSubstr("1 gap of 4.2"));
 }
 
+// Nothing is smeared: a sample is a tick, which is as long as the clock of the record has it.
+TEST_F(IrregularTimes, OfAClockOfTheirOwnAreTicks) {
+  std::ifstream run(folder_.path() / "run" / "record.csv");
+  std::ofstream slow(folder_.path() / "slow.csv");
+  slow.precision(12);
+  std::string line;
+  std::getline(run, line);
+  slow << line << "\n";
+  for (int k = 0; std::getline(run, line); ++k) {
+    slow << 1.002 * k * kTick << line.substr(line.find(',')) << "\n";
+  }
+  slow.close();
+  const CommandResult result =
+      RunCommand("compare --setup mjcf/voice_coil --record " + File("slow.csv"));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              HasSubstr("slow.csv: the sample time is 0.20 % off the control tick: "
+                        "its samples are taken as ticks"));
+  EXPECT_THAT(result.out, ::testing::Not(HasSubstr("resampled")));
+}
+
 }  // namespace
 }  // namespace mjdiag

@@ -137,6 +137,22 @@ TEST(Explain, NamesAMotorThatIsWeak) {
   ExpectValue(found, "gear@motor1", 0.97, 1e-3);
 }
 
+// One of the two at a joint makes up for the other.
+TEST(Explain, NamesDryAndViscousFrictionOfTwoJoints) {
+  const Explained found = ExplainedFor({"coulomb_friction@shoulder:force=0.2",
+                                        "viscous_friction@shoulder:coefficient=0.05",
+                                        "coulomb_friction@elbow:force=0.05",
+                                        "viscous_friction@elbow:coefficient=0.02"});
+  EXPECT_THAT(
+      NamesOf(found),
+      UnorderedElementsAre("coulomb_friction@shoulder", "viscous_friction@shoulder",
+                           "coulomb_friction@elbow", "viscous_friction@elbow"));
+  ExpectValue(found, "coulomb_friction@shoulder", 0.2, 5e-3);
+  ExpectValue(found, "viscous_friction@shoulder", 0.05, 5e-3);
+  ExpectValue(found, "coulomb_friction@elbow", 0.05, 1e-3);
+  ExpectValue(found, "viscous_friction@elbow", 0.02, 1e-3);
+}
+
 // Shapes of one resistance are one block: none of them stands beside another.
 TEST(Explain, NamesDryFrictionOfTwoJointsOnceEach) {
   const Explained found = ExplainedFor(
