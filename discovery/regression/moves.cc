@@ -152,13 +152,15 @@ bool MoveSearch::IsApart(const Change& change, std::size_t variation) const {
   const Block& block = blocks_[kept_[variation].block];
   const auto is_curve = [&](std::size_t v) { return IsCurve(blocks_[kept_[v].block]); };
   // A force without a name is all that is left, or there is a name for it.
-  if (is_curve(variation) &&
-      !(change.added.empty() && std::ranges::all_of(change.removed, [&](std::size_t t) {
-          return IsCurve(blocks_[terms_[t].block]);
-        }))) {
+  if (!change.added.empty() &&
+      (is_curve(variation) || std::ranges::any_of(change.added, is_curve))) {
     return false;
   }
-  if (std::ranges::any_of(change.added, is_curve)) return false;
+  if (std::ranges::any_of(change.removed, [&](std::size_t t) {
+        return IsCurveOf(block, blocks_[terms_[t].block]);
+      })) {
+    return false;
+  }
   return std::ranges::none_of(change.added, [&](std::size_t v) {
     // Two of one block are two waves; of anything else two points of its grid.
     return v == variation ||

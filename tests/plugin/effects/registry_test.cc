@@ -48,7 +48,8 @@ std::string SiteOf(const Effect& effect, const char* joint) {
     case SiteKind::kActuator:
       return "y_motor";
     case SiteKind::kSensor:
-      return "y_encoder";
+      // The others read frames, not joints.
+      return &effect == &TransmissionWindup() ? "z_encoder" : "y_encoder";
     case SiteKind::kHeldJoint:
       return "r2";
     case SiteKind::kHinge:
