@@ -84,10 +84,9 @@ std::string Extend(const DiscoverCommand& command, const Machine& machine,
 
 void Discover(DiscoverCommand& command) {
   RequirePlantOfItsFile(command.machine);
-  std::vector<std::string> drafted =
-      DraftMachine(command.machine, FirstRecord(command.records));
-  std::ranges::copy(AdoptClock(command.machine, FirstRecord(command.records)),
-                    std::back_inserter(drafted));
+  const std::string first = FirstRecord(command.records);
+  std::vector<std::string> drafted = DraftMachine(command.machine, first);
+  std::ranges::copy(AdoptClock(command.machine, first), std::back_inserter(drafted));
   const Machine machine = LoadSubject(command.machine).nominal;
   const Measurements measurements =
       LoadMeasurements(command.records, command.machine, machine);

@@ -137,6 +137,17 @@ VectorXd SpeedsOf(const Moving& moving) {
   return VectorXd::Map(speeds.data(), std::ssize(speeds));
 }
 
+/// Those of some members.
+std::vector<Index> CoordinatesIn(const std::vector<Coordinate>& coordinates,
+                                 const std::set<std::size_t>& members) {
+  std::vector<Index> places;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (members.contains(coordinates[i].member))
+      places.push_back(static_cast<Index>(i));
+  }
+  return places;
+}
+
 /// Where the answer's coordinates of some members are, and with one of them moved.
 struct Around {
   std::vector<OtherMachine> machines;
@@ -151,15 +162,10 @@ Around AroundOf(const AnswerData& data, const Model& model,
   }
   Around around{{{data.With(without)}}, {}};
   const auto coordinates = CoordinatesOf(data.blocks, model);
-  const VectorXd x = Place(coordinates, model);
-  for (Index i = 0; i < x.size(); ++i) {
-    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
-    if (!members.contains(one.member)) continue;
-    const double step = one.Step(x[i]);
-    VectorXd moved = x;
-    moved[i] += step;
-    around.machines.push_back({data.With(At(coordinates, model, moved)), step});
-    around.coordinates.push_back(i);
+  around.coordinates = CoordinatesIn(coordinates, members);
+  for (const Index i : around.coordinates) {
+    const MovedOnce moved = Moved(coordinates, model, i);
+    around.machines.push_back({data.With(moved.model), moved.step});
   }
   return around;
 }
@@ -239,20 +245,15 @@ std::optional<Curve> CurveByLaws(const AnswerData& data, const Model& model,
   };
   const auto value = of_members(model);
   if (!value) return std::nullopt;
-  Curve curve{*value, {}, {}};
   const auto coordinates = CoordinatesOf(data.blocks, model);
-  const VectorXd x = Place(coordinates, model);
-  for (Index i = 0; i < x.size(); ++i) {
-    const Coordinate& one = coordinates[static_cast<std::size_t>(i)];
-    if (!members.contains(one.member)) continue;
-    const double step = one.Step(x[i]);
-    VectorXd moved = x;
-    moved[i] += step;
-    const auto there = of_members(At(coordinates, model, moved));
+  Curve curve{*value, {}, CoordinatesIn(coordinates, members)};
+  curve.slopes.resize(value->size(), std::ssize(curve.coordinates));
+  for (Index i = 0; i < curve.slopes.cols(); ++i) {
+    const MovedOnce moved =
+        Moved(coordinates, model, curve.coordinates[static_cast<std::size_t>(i)]);
+    const auto there = of_members(moved.model);
     if (!there) return std::nullopt;
-    curve.coordinates.push_back(i);
-    curve.slopes.conservativeResize(value->size(), std::ssize(curve.coordinates));
-    curve.slopes.rightCols(1) = (*there - *value) / step;
+    curve.slopes.col(i) = (*there - *value) / moved.step;
   }
   return curve;
 }

@@ -18,11 +18,8 @@ ExactColumns ExactColumnsOf(const MachineWith& machine_with, const Machine& othe
   const VectorXd x = Place(coordinates, model);
   std::vector<OtherMachine> others;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    const auto place = static_cast<Index>(i);
-    const double step = coordinates[i].Step(x[place]);
-    VectorXd moved = x;
-    moved[place] += step;
-    others.push_back({machine_with(At(coordinates, model, moved)), step});
+    const MovedOnce moved = Moved(coordinates, model, static_cast<Index>(i));
+    others.push_back({machine_with(moved.model), moved.step});
   }
   for (std::size_t m = 0; m < model.size(); ++m) {
     others.push_back({machine_with(Without(model, m))});

@@ -205,6 +205,14 @@ Model At(const std::vector<Coordinate>& coordinates, Model model, const VectorXd
   return model;
 }
 
+MovedOnce Moved(const std::vector<Coordinate>& coordinates, const Model& model,
+                Index place) {
+  VectorXd x = Place(coordinates, model);
+  const double step = coordinates[static_cast<std::size_t>(place)].Step(x[place]);
+  x[place] += step;
+  return {At(coordinates, model, x), step};
+}
+
 Eigen::MatrixXd WhiteningOf(const std::vector<Block>& blocks, const Model& model,
                             const std::vector<Coordinate>& coordinates) {
   const Index size = std::ssize(coordinates);

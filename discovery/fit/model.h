@@ -63,6 +63,13 @@ std::vector<Coordinate> CoordinatesOf(const std::vector<Block>& blocks,
 Eigen::VectorXd Place(const std::vector<Coordinate>& coordinates, const Model& model);
 Model At(const std::vector<Coordinate>& coordinates, Model model,
          const Eigen::VectorXd& x);
+/// With one coordinate a step from where it is (Coordinate::Step), for a difference.
+struct MovedOnce {
+  Model model;
+  double step = 0.0;
+};
+MovedOnce Moved(const std::vector<Coordinate>& coordinates, const Model& model,
+                Eigen::Index place);
 
 /// What makes coordinates white as they are known beforehand: nothing, but for the knots of a
 /// curve (WhiteningOfKnots). Upper triangular.

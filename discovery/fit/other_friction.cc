@@ -97,9 +97,9 @@ double WithClaims(const ConvergedModel& one) {
 
 /// Where there is time, forms are compared as they are fitted: that which breaks away at
 /// another speed than the law in its place knows is nowhere near before.
-std::vector<std::optional<ConvergedModel>> Fitted(const ConvergedBeside& beside,
-                                                  const std::vector<Model>& forms,
-                                                  const ConvergedModel& found) {
+std::optional<ConvergedModel> BestFitted(const ConvergedBeside& beside,
+                                         const std::vector<Model>& forms,
+                                         const ConvergedModel& found) {
   const KeptGains gains = KeepGains(found.path);
   std::vector<ModelFit> fits;
   for (const Model& form : forms) {
@@ -112,12 +112,13 @@ std::vector<std::optional<ConvergedModel>> Fitted(const ConvergedBeside& beside,
   }
   // Each may come out best.
   const double hoped = std::max(kLeastGain, std::abs(found.score()));
-  auto settled =
-      SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(), hoped);
-  for (auto& one : settled) {
-    if (one && WithClaims(*one) > WithClaims(found) - kLeastGain) one.reset();
+  std::optional<ConvergedModel> best;
+  for (auto& one : SettleRivals(beside, std::move(fits), {found.path.noise},
+                                found.score(), hoped)) {
+    if (!one || WithClaims(*one) > WithClaims(found) - kLeastGain) continue;
+    if (!best || WithClaims(*one) < WithClaims(*best)) best = std::move(one);
   }
-  return settled;
+  return best;
 }
 
 }  // namespace
@@ -130,13 +131,7 @@ std::optional<ConvergedModel> WithOtherFriction(const ConvergedBeside& beside,
   });
   if (!rubs || beside.is_over()) return std::nullopt;
   const std::vector<Model> forms = OtherForms(beside, found);
-  if (has_time) {
-    std::optional<ConvergedModel> best;
-    for (auto& one : Fitted(beside, forms, found)) {
-      if (one && (!best || WithClaims(*one) < WithClaims(*best))) best = std::move(one);
-    }
-    return best;
-  }
+  if (has_time) return BestFitted(beside, forms, found);
   std::vector<std::optional<ConvergedModel>> followed(forms.size());
   ParallelForAll(static_cast<int>(forms.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
