@@ -21,6 +21,7 @@
 #include "mjdiag/discovery/answer/resistances.h"
 #include "mjdiag/discovery/answer/split_run.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
+#include "mjdiag/discovery/answer/values_that_predict.h"
 #include "mjdiag/discovery/discovery.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/first_look.h"
@@ -41,7 +42,7 @@ namespace {
 /// Of the budget, what the search may use; the rest is for the judgement.
 constexpr double kShareOfSearch = 0.7;
 /// And both together, the rest is for figures.
-constexpr double kShareOfJudgement = 0.9;
+constexpr double kShareOfJudgement = 0.85;
 
 /// Seconds since a discovery began, against its budget.
 class RunningTime {
@@ -175,8 +176,17 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   const AnswerData data{looked_at, felt, reading_sd, explained.blocks, explained.steps};
   NoteInputNoise(machine, looked, felt, discovery.notes);
   time.Say("what unseen data say", kShareOfSearch);
-  const UnseenJudgement judged =
+  UnseenJudgement judged =
       JudgeUnseen(data, explained, [&] { return time.IsOver(kShareOfJudgement); });
+  if (auto better =
+          WithValuesThatPredict(data, judged.answer, judged.nothing.seen.noise,
+                                [&] { return time.IsOver(); })) {
+    judged.answer = std::move(better->answer);
+    judged.decisions.push_back(
+        {ModelText(data.blocks, judged.answer.fit.model), better->log_ratio,
+         "taken: values that leave less of what lasts predict both "
+         "what fits saw and what they did not better"});
+  }
   discovery.decisions = explained.decisions;
   std::ranges::copy(judged.decisions, std::back_inserter(discovery.decisions));
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mjdiag/discovery/answer/values_that_predict.h"
 #include "mjdiag/discovery/comparison/prediction.h"
 #include "mjdiag/discovery/mismatch_figures.h"
 
@@ -36,20 +37,11 @@ bool IsFinite(const Prediction& prediction, Index horizon) {
 
 void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
                     Discovery& discovery) {
-  const Index skip = data.machine.setup().compare.skip_samples;
-  const auto predict = [&](const ModelOnRuns& one, bool of_seen) {
-    const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
-    std::vector<Index> skips;
-    for (std::size_t r = 0; r < run.records.size(); ++r) {
-      skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
-                              : std::max(skip, data.run.seen_of[r]));
-    }
-    return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen,
-                   skips);
-  };
   // Before and after in what was fitted, and in what was not.
-  const std::array all{predict(judged.nothing, true), predict(judged.answer, true),
-                       predict(judged.nothing, false), predict(judged.answer, false)};
+  const std::array all{PredictionOf(data, judged.nothing, true),
+                       PredictionOf(data, judged.answer, true),
+                       PredictionOf(data, judged.nothing, false),
+                       PredictionOf(data, judged.answer, false)};
   Index longest = std::ssize(all.front().horizons);
   for (const Prediction& one : all) {
     longest = std::min<Index>(longest, std::ssize(one.horizons));

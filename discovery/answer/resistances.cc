@@ -85,7 +85,16 @@ class CurveOf {
       : sign_(moving.speed.array().sign()),
         A_(moving.speed.size(), 3),
         speeds_(speeds) {
+    // What springs or creeps before it slides is no dry friction: where it hardly moves says
+    // nothing of that.
+    constexpr double kSlides =
+        0.05;  // of the greatest speed but for a twentieth of the time
+    VectorXd all = moving.speed.cwiseAbs();
+    std::ranges::sort(all);
+    slides_ = (moving.speed.cwiseAbs().array() > kSlides * all[19 * all.size() / 20])
+                  .cast<double>();
     A_ << sign_, moving.speed, VectorXd::Ones(sign_.size());
+    A_ = slides_.asDiagonal() * A_;
     normal_.compute(A_.transpose() * A_);
     near_.resize(static_cast<std::size_t>(speeds.size()));
     for (Index i = 0; i < moving.speed.size(); ++i) {
@@ -122,6 +131,7 @@ class CurveOf {
   MatrixXd A_;
   Eigen::LDLT<MatrixXd> normal_;
   VectorXd speeds_;
+  VectorXd slides_;          // 1 where it does
   std::vector<Sides> near_;  // samples that are nearer to a speed than to the others
 };
 

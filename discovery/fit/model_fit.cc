@@ -142,15 +142,18 @@ KnownNear KnownAt(const std::vector<Coordinate>& coordinates, const MatrixXd& R,
 /// bounds of the coordinates, shorter ones [Levenberg, Marquardt] where nothing is gained.
 class Fitting {
  public:
-  Fitting(Innovations& innovations, const MatrixXd& R)
+  /// @param from  where it begins, and what is not fitted stays
+  Fitting(Innovations& innovations, const MatrixXd& R, const VectorXd& from,
+          FittedValues fitted)
       : innovations_(innovations),
         R_(R),
         lower_(innovations.size()),
         upper_(innovations.size()) {
     for (Index i = 0; i < innovations.size(); ++i) {
       const Coordinate& one = innovations.coordinates()[static_cast<std::size_t>(i)];
-      lower_[i] = one.lower;
-      upper_[i] = one.upper;
+      const bool stays = fitted == FittedValues::kSizes && !one.is_known;
+      lower_[i] = stays ? from[i] : one.lower;
+      upper_[i] = stays ? from[i] : one.upper;
     }
   }
 
@@ -247,14 +250,16 @@ MachineWith InTime(MachineWith machine_with, std::function<bool()> is_over) {
 
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks, const Model& start,
-                  int iterations) {
+                  const std::vector<Block>& blocks, const Model& start, int iterations,
+                  FittedValues fitted) {
   const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
   const MatrixXd R = WhiteningOf(blocks, start, coordinates);
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
   innovations.Of(x);
-  if (x.size() > 0 && iterations > 0) x = Fitting(innovations, R).From(x, iterations);
+  if (x.size() > 0 && iterations > 0) {
+    x = Fitting(innovations, R, x, fitted).From(x, iterations);
+  }
   ModelFit fit;
   fit.model = At(coordinates, start, x);
   fit.deviance = innovations.Of(x).squaredNorm() + gains.log_determinant;

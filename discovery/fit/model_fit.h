@@ -35,10 +35,17 @@ using MachineWith = std::function<Machine(const Model&)>;
 /// The same as long as it is not over: from then on NumericalError, which ends a fit.
 MachineWith InTime(MachineWith machine_with, std::function<bool()> is_over);
 
+/// Which values a fit may change.
+enum class FittedValues {
+  kAll,
+  kSizes  ///< how large laws and numbers are; what shapes laws stays
+};
+
 /// NumericalError where the run with the first values diverges; InputError where the plant
 /// cannot be so.
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks, const Model& start, int iterations);
+                  const std::vector<Block>& blocks, const Model& start, int iterations,
+                  FittedValues fitted = FittedValues::kAll);
 
 }  // namespace mjdiag
