@@ -216,7 +216,9 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     time.Say("unexplained forces", 0.8);
     const ObservedMotion motion = MotionOfAnswer(data, judged);
     AddForces(data, judged, discovery);
-    if (is_left) AddResidualDependence(data, judged, motion, discovery);
+    if (is_left && !time.IsOver()) {
+      AddResidualDependence(data, judged, motion, discovery);
+    }
     if (options.figures) AddLawPlots(data, judged, motion, discovery);
   }
   if (options.figures) {

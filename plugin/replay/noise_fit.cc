@@ -215,6 +215,7 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   FilterNoise rough = slow;
   rough.white = fast.white;
   for (const FilterNoise& start : {slow, rough}) {
+    if (is_over && is_over()) break;
     if (const auto path = of_pieces.Follow(start)) {
       of_pieces.Follow(Refined(*path, reading_sd, longest, true));
     }
