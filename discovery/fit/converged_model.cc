@@ -106,25 +106,6 @@ class Settling {
     Take({settled_.fit, std::move(path)});
   }
 
-  /// The same from nothing, once: what explains much more than the model so far is far from its
-  /// noise, and from there on a search ends at the nearest that is good.
-  void RelaxFromNothing() {
-    constexpr double kOfReading = 0.1;  // innovations are smaller by a twentieth
-    const auto readings = static_cast<double>(settled_.path.counts.count());
-    if (is_from_nothing_ || beat_ - settled_.score() < kOfReading * readings) return;
-    is_from_nothing_ = true;
-    const double before = settled_.score();
-    try {
-      Take({settled_.fit,
-            FilterLikeliest(beside_.machine_with(settled_.fit.model), beside_.run,
-                            beside_.reading_sd, beside_.is_over)});
-    } catch (const NumericalError&) {
-    }
-    if (settled_.score() > before - LeastGain()) return;
-    is_likeliest_ = false;
-    round_ = std::max(round_, 1);
-  }
-
  private:
   static constexpr int kRounds = 6;
 
@@ -212,12 +193,11 @@ class Settling {
   double beat_;
   ConvergedModel settled_;
   bool is_likeliest_ = false;  // no noise is known that suits it better
-  bool is_from_nothing_ = false;
   int round_ = 0;
   double gained_ = 0.0;  // by the last round
 };
 
-Settling& Best(std::vector<Settling>& rivals) {
+const Settling& Best(const std::vector<Settling>& rivals) {
   return *std::ranges::min_element(
       rivals, {}, [](const Settling& one) { return one.settled().score(); });
 }
@@ -244,9 +224,8 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
   };
   each([&](Settling& one) { one.Begin(hopeless); });
   while (!rivals.empty() && !beside.is_over()) {
-    Settling& best = Best(rivals);
+    const Settling& best = Best(rivals);
     if (best.IsNowhere()) break;
-    if (best.is_likeliest()) best.RelaxFromNothing();
     if (!best.is_likeliest()) {
       // Noises gain as much as laws do, and what is large is nothing behind the noise of the
       // machine without it: whoever may come out best is asked at once.

@@ -69,9 +69,6 @@ class ModelSearch {
   using AsFitted = std::map<Judged, ModelFit>;
   const ModelFit& IncumbentBehind(const Judged& judged, const Whitenings& whitenings,
                                   AsFitted& known) const;
-  /// Settled without the numbers that are at their ends, if something new is left of it.
-  ConvergedModel WithoutEnds(ConvergedModel settled, const Whitenings& whitenings,
-                             const Judged& judged, int iterations) const;
   /// The best of some moves, fitted; none if none pays.
   /// @param iterations     of a fit; 0: at the values of the regression
   /// @param beside_itself  where there are none: beside the model as it is, behind its noise
@@ -184,7 +181,6 @@ class ModelSearch {
   std::vector<Candidate> candidates_;
   /// What is large comes first.
   bool looks_at_forces_ = true;
-  double largest_of_forces_ = 0.0;  ///< what a move by forces promised
   /// What is simple comes first, too.
   bool at_every_shape_ = false;
   /// And what makes up for another thing comes last; of a number of the plant it never does.

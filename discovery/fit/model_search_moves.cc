@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -59,12 +58,6 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing)
        .inputs_are_noise = found_.input_width == 0.0 && inputs_are_noise_});
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
-  // What is small beside the first is for the filter to tell, which knows more.
-  constexpr double kLarge = 0.03;
-  const double promised =
-      moves.best.empty() ? 0.0 : moves.score - moves.best.front().score;
-  largest_of_forces_ = std::max(largest_of_forces_, promised);
-  if (promised < kLarge * largest_of_forces_) return std::nullopt;
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them.
   constexpr std::size_t kMost = 3;
@@ -104,25 +97,6 @@ const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
   if (found != known.end()) return found->second;
   ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
   return known.emplace(judged, std::move(fit)).first->second;
-}
-
-ConvergedModel ModelSearch::WithoutEnds(ConvergedModel settled,
-                                        const Whitenings& whitenings,
-                                        const Judged& judged, int iterations) const {
-  Model inside = settled.fit.model;
-  std::erase_if(inside, [&](const Member& member) { return !MayHave({member}); });
-  const bool is_new = std::ranges::any_of(inside, [&](const Member& member) {
-    return std::ranges::find(found_.fit.model, member.block, &Member::block) ==
-           found_.fit.model.end();
-  });
-  if (!is_new || IsOver()) return settled;
-  try {
-    return Settle(Beside(judged.second ? steps_.Other() : steps_),
-                  Fitted(inside, whitenings, judged, iterations), {settled.path.noise},
-                  found_.score, found_.score - settled.score());
-  } catch (const NumericalError&) {
-    return settled;
-  }
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
@@ -236,16 +210,6 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     for (std::size_t i = 0; i < places.size(); ++i) {
       settled[places[i]] = std::move(rivals[i]);
     }
-  }
-  // A number at its end makes up for something else; what came in with it may be worth more
-  // than its rivals without it.
-  const auto likeliest = std::ranges::min_element(settled, {}, [](const auto& one) {
-    return one ? one->score() : std::numeric_limits<double>::infinity();
-  });
-  if (likeliest != settled.end() && *likeliest && !MayHave((*likeliest)->fit.model)) {
-    const Tried& one = tried[static_cast<std::size_t>(likeliest - settled.begin())];
-    *likeliest =
-        WithoutEnds(std::move(**likeliest), whitenings, one.judged, iterations);
   }
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < settled.size(); ++i) {

@@ -26,7 +26,6 @@ class BackwardPass {
         n_(path.pulled.rows()),
         nf_(path.dof_count()),
         rho_(ForceKalman(path.dofs, path.noise, path.sample_time).rho()),
-        white_(path.noise.WhiteVariance(path.sample_time)),
         r_(VectorXd::Zero(n_)),
         W_(MatrixXd::Zero(n_, n_)) {}
 
@@ -48,7 +47,6 @@ class BackwardPass {
   Index n_;
   Index nf_;
   VectorXd rho_;
-  VectorXd white_;
   VectorXd r_;
   MatrixXd W_;
 };
@@ -62,7 +60,7 @@ void BackwardPass::ThroughTick(Index k) {
     F.col(ns + j).head(ns) = tangent.B.col(path_.dofs[static_cast<std::size_t>(j)]);
   }
   F.diagonal().tail(nf_ + 1) = rho_;
-  smoothed_.value.col(k) = white_.cwiseProduct(
+  smoothed_.value.col(k) = path_.noise.white.cwiseAbs2().cwiseProduct(
       F.block(0, ns, ns, nf_).transpose() * r_.head(ns));
   r_ = (F.transpose() * r_).eval();
   // What rounding makes skew would grow.

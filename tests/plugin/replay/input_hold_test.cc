@@ -33,7 +33,7 @@ class InputHold : public ::testing::Test {
       <sensor><jointpos name="y" joint="j"/></sensor></mujoco>)");
   }
 
-  Setup SetupWith(const std::string& more) {
+  mjdiag::Setup SetupWith(const std::string& more) {
     folder_.Write("setup.toml",
                   "schema = \"mjdiag.setup/1\"\nname = \"carriage\"\n"
                   "plant = \"plant.xml\"\n[rates]\ncontrol = 100.0\nsubsteps = 10\n"
@@ -77,7 +77,7 @@ class InputHold : public ::testing::Test {
 };
 
 TEST_F(InputHold, IsToldByTheRecordWhateverThePlantLacks) {
-  const Setup setup = SetupWith("");
+  const mjdiag::Setup setup = SetupWith("");
   EXPECT_GT(GainOfStraightInputs(setup, Record(false)), 10.0);
   EXPECT_LT(GainOfStraightInputs(setup, Record(true)), -10.0);
 }
