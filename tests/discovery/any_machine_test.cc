@@ -145,7 +145,7 @@ TEST(DiscoverAnyMachine, SaysWhatResistsAJointAsOneCurve) {
 
 // Its encoder is at its motor: far below its resonance the carriage follows, and what is between
 // gives by the motor's force.
-TEST(DiscoverAnyMachine, FindsWhatATransmissionGives) {
+TEST(DiscoverAnyDrive, FindsWhatATransmissionGives) {
   const Machine rigid = MachineOf(
       R"(<option timestep="0.001" gravity="0 0 0"/><worldbody><body>
          <joint name="j" type="slide" axis="1 0 0" damping="8"/>
@@ -168,7 +168,7 @@ constexpr char kHovers[] =
        </worldbody><actuator><motor name="u" site="s" gear="0 0 5 0 0 0"/></actuator>
        <sensor><framepos name="y" objtype="site" objname="s"/></sensor>)";
 
-TEST(DiscoverAnyMachine, FindsAWeakMotorOfWhatFlies) {
+TEST(DiscoverAnyDrive, FindsAWeakMotorOfWhatFlies) {
   const Machine craft =
       MachineOf(kHovers, "element = \"y\"\ncomponent = 2\nunit = \"m\"");
   const ModelParameter gear = FindModelParameter(craft.plant(), "gear@u");
@@ -191,7 +191,7 @@ constexpr char kMounted[] =
        <sensor><jointpos name="y" joint="j"/></sensor>)";
 
 // Nothing drives it and nothing measures it.
-TEST(DiscoverAnyMachine, FindsASoftMountThatNoSensorSees) {
+TEST(DiscoverAnyDrive, FindsASoftMountThatNoSensorSees) {
   const Machine stiff = MachineOf(kMounted, "element = \"y\"\nunit = \"m\"");
   const ModelParameter spring = FindModelParameter(stiff.plant(), "stiffness@mount");
   const Record record = Measure(stiff.WithNumbers({{spring, 0.8}}), TwoSines, 1e-6);
@@ -208,7 +208,7 @@ constexpr char kRigid[] =
        <sensor><jointpos name="y" joint="j"/></sensor>)";
 
 // Half of the inertia is behind a spring.
-TEST(DiscoverAnyMachine, FindsTheSecondMassOfADrive) {
+TEST(DiscoverAnyDrive, FindsTheSecondMassOfADrive) {
   const Machine rigid = MachineOf(kRigid, "element = \"y\"\nunit = \"rad\"");
   const Machine drive = rigid.With(
       {{},
