@@ -83,8 +83,6 @@ void Compare(CompareOptions& options) {
   std::vector<std::string> notes = DraftMachine(options.machine, options.record);
   std::ranges::copy(AdoptClock(options.machine, options.record),
                     std::back_inserter(notes));
-  std::ranges::copy(AdoptHold(options.machine, options.record),
-                    std::back_inserter(notes));
   Subject subject = LoadSubject(options.machine);
   subject.options.seed = options.seed;
   std::ranges::copy(NotesOn(subject.nominal), std::back_inserter(notes));

@@ -87,7 +87,6 @@ void Discover(DiscoverCommand& command) {
   const std::string first = FirstRecord(command.records);
   std::vector<std::string> drafted = DraftMachine(command.machine, first);
   std::ranges::copy(AdoptClock(command.machine, first), std::back_inserter(drafted));
-  std::ranges::copy(AdoptHold(command.machine, first), std::back_inserter(drafted));
   const Machine machine = LoadSubject(command.machine).nominal;
   const Measurements measurements =
       LoadMeasurements(command.records, command.machine, machine);

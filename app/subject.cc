@@ -12,7 +12,6 @@
 #include "mjdiag/plugin/draft/setup_draft.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
 #include "mjdiag/plugin/plant/time_step.h"
-#include "mjdiag/plugin/replay/input_hold.h"
 #include "mjdiag/plugin/runtime/late_faults.h"
 #include "mjdiag/plugin/setup/measured_file.h"
 #include "mjdiag/signals/error.h"
@@ -207,27 +206,6 @@ std::vector<std::string> AdoptClock(MachineOptions& options,
   return {std::filesystem::path(record).filename().string() + ": the sample time is " +
           FormatNumber(100.0 * std::abs(off), 2) +
           " % off the control tick: its samples are taken as ticks"};
-}
-
-std::vector<std::string> AdoptHold(MachineOptions& options, const std::string& record) {
-  constexpr double kEvidence = 10.0;  // e^5 as likely
-  const Setup setup = ReadSetup(options.setup, options.overrides);
-  const std::vector<std::string> inputs = InputsOfUnknownHold(setup);
-  if (inputs.empty()) return {};
-  double gain = 0.0;
-  try {
-    gain = GainOfStraightInputs(setup, record);
-  } catch (const InputError&) {
-    return {};  // who reads it says so, with what a manifest says of it
-  }
-  if (gain < kEvidence) return {};
-  for (const std::string& input : inputs) {
-    options.overrides.push_back("actuators." + input + ".hold=\"linear\"");
-  }
-  return {Listed(inputs, ", ") +
-          ": taken to go straight from sample to sample, which is " +
-          "likelier than held (-2 ln L " + FormatNumber(-gain, 3) +
-          "); the setup's `hold` may say it"};
 }
 
 Record ReadMeasured(const Setup& setup, const std::string& file,

@@ -67,10 +67,6 @@ std::vector<std::string> DraftMachine(MachineOptions& options,
 /// samples are ticks: what is resampled is smeared. Sets the rate that goes with them.
 /// @return notes for people
 std::vector<std::string> AdoptClock(MachineOptions& options, const std::string& record);
-/// Where the setup does not say what inputs do between their samples, the record does
-/// (input_hold.h). Sets their `hold`.
-/// @return notes for people
-std::vector<std::string> AdoptHold(MachineOptions& options, const std::string& record);
 void AddMotionOptions(CLI::App& command, MotionOptions& options);
 /// `--seed`, a whole number from 0 on; CLI11 itself would take -1 for 2^64 - 1.
 void AddSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& words);

@@ -35,18 +35,6 @@ void WriteSubsteps(SetupText& text, int substeps) {
   }
 }
 
-/// What inputs do between their samples where the setup does not say it, or says another thing.
-void WriteHold(SetupText& text, const ActuatorSetup& actuator) {
-  if (!actuator.hold) return;
-  const std::string path = "actuators." + actuator.channel;
-  const std::string hold = '"' + std::string(HoldName(*actuator.hold)) + '"';
-  if (const auto given = text.At(path + ".hold")) {
-    text.Replace(*given.node(), hold);
-  } else if (const auto element = text.At(path + ".element")) {
-    text.AddBeside(*text.At(path).as_table(), *element.node(), "element", "hold", hold);
-  }
-}
-
 /// Puts `suffix` in front of the closing quotation marks of a TOML string.
 std::string WithSuffix(std::string quoted, const std::string& suffix) {
   const bool multiline = quoted.starts_with(R"(""")") || quoted.starts_with("'''");
@@ -78,9 +66,6 @@ std::string ExtendSetup(const fs::path& setup_file, const Setup& setup,
     text.Replace(*friction.node(), "true");
   }
   WriteSubsteps(text, setup.rates.substeps);
-  for (const ActuatorSetup& actuator : setup.channels.actuators) {
-    WriteHold(text, actuator);
-  }
   for (const SensorSetup& sensor : setup.channels.sensors) {
     double sd = sensor.noise_sd;
     for (const PlacedEffect& placed : effects) {

@@ -10,7 +10,7 @@ RecordedInputs::RecordedInputs(const Machine& machine, const MeasuredRun& run)
       substeps_(machine.rates().substeps / static_cast<int>(ticks_)) {
   Index i = 0;
   for (const ActuatorSetup& actuator : machine.channels().actuators) {
-    courses_.emplace_back(actuator.HoldOrZero(), run.EveryInput().row(i++).transpose(),
+    courses_.emplace_back(actuator.hold, run.EveryInput().row(i++).transpose(),
                           substeps_);
   }
 }

@@ -71,7 +71,7 @@ void TickLoop::AddFeedthrough(const Setup& setup) {
     const ActuatorSetup& actuator = actuators_[i];
     feedthrough_[i] = &inputs_.At(actuator.channel);
     courses_[i] =
-        InputCourse(actuator.HoldOrZero(), feedthrough_[i]->samples.unaryExpr([&](double u) {
+        InputCourse(actuator.hold, feedthrough_[i]->samples.unaryExpr([&](double u) {
           return Clamp(u, actuator.limit);
         }),
                     setup.rates.substeps);

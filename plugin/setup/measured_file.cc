@@ -41,7 +41,7 @@ std::map<std::string, ReadingScale> ReadingsOf(const Setup& setup) {
 MeasuredFile ReadMeasured(const Setup& setup, const std::filesystem::path& file) {
   Resampling resampling{setup.rates.tick(), {}};
   for (const ActuatorSetup& actuator : setup.channels.actuators) {
-    resampling.courses[actuator.channel] = CourseOf(actuator.HoldOrZero());
+    resampling.courses[actuator.channel] = CourseOf(actuator.hold);
   }
   for (const AxisSetup& axis : setup.control.axes) {
     resampling.courses[axis.actuator] = Course::kHeld;

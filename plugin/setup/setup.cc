@@ -26,18 +26,6 @@ const Element& FindNamed(const std::string& setup, const std::vector<Element>& e
 
 }  // namespace
 
-const char* HoldName(Hold hold) {
-  switch (hold) {
-    case Hold::kZero:
-      return "zero";
-    case Hold::kLinear:
-      return "linear";
-    case Hold::kBandLimited:
-      return "band_limited";
-  }
-  return "";
-}
-
 const SensorSetup& Channels::Sensor(std::string_view channel) const {
   return FindNamed(setup, sensors, &SensorSetup::channel, channel, "sensor channel");
 }

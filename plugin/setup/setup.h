@@ -36,20 +36,14 @@ enum class Hold {
   kBandLimited  ///< has nothing above half the sampling rate
 };
 
-/// As setups write it.
-const char* HoldName(Hold hold);
-
 /// [actuators.<channel>]: an MJCF actuator, driven once a control tick.
 struct ActuatorSetup {
   std::string channel;
-  std::string element;     ///< MJCF actuator
-  std::string unit;        ///< SI unit of its control signal
-  double limit = 0.0;      ///< |u| is clamped to it; 0: not
-  std::string enabled_by;  ///< record channel, 0: an open circuit; empty: always on
-  /// Of recorded inputs; commands of a controller are held. None: nobody says (input_hold.h).
-  std::optional<Hold> hold{};
-
-  Hold HoldOrZero() const { return hold.value_or(Hold::kZero); }
+  std::string element;      ///< MJCF actuator
+  std::string unit;         ///< SI unit of its control signal
+  double limit = 0.0;       ///< |u| is clamped to it; 0: not
+  std::string enabled_by;   ///< record channel, 0: an open circuit; empty: always on
+  Hold hold = Hold::kZero;  ///< of recorded inputs; commands of a controller are held
 };
 
 /// [axes.<name>]: one controlled axis.

@@ -99,13 +99,14 @@ void ReadSensors(const TomlTable& root, Setup& setup, ChannelUnits& channels) {
     root.Fail("sensors", "is empty", "a sensor at least");
 }
 
-std::optional<Hold> ReadHold(const TomlTable& actuator) {
-  if (!actuator.Has("hold")) return std::nullopt;
-  const std::string name = actuator.Text("hold");
-  for (const Hold hold : {Hold::kZero, Hold::kLinear, Hold::kBandLimited}) {
-    if (name == HoldName(hold)) return hold;
+Hold ReadHold(const TomlTable& actuator) {
+  const std::string hold = actuator.Text("hold", "zero");
+  if (hold == "linear") return Hold::kLinear;
+  if (hold == "band_limited") return Hold::kBandLimited;
+  if (hold != "zero") {
+    actuator.Fail("hold", "is '" + hold + "'", R"("zero", "linear" or "band_limited")");
   }
-  actuator.Fail("hold", "is '" + name + "'", R"("zero", "linear" or "band_limited")");
+  return Hold::kZero;
 }
 
 void ReadActuators(const TomlTable& root, Setup& setup, ChannelUnits& channels) {

@@ -134,22 +134,5 @@ TEST_F(IrregularTimes, OfAClockOfTheirOwnAreTicks) {
   EXPECT_THAT(result.out, ::testing::Not(HasSubstr("resampled")));
 }
 
-// A current that was measured is no command that is held.
-TEST_F(IrregularTimes, OfInputsThatGoOnBetweenThemAreSaid) {
-  const std::string simulate =
-      "simulate --setup mjcf/voice_coil --replay " + File("current.csv");
-  const auto compared = [&](const std::string& hold) {
-    const CommandResult run = RunCommand(simulate + " --set 'actuators.i.hold=\"" +
-                                         hold + "\"' --out " + File(hold));
-    EXPECT_EQ(run.status, 0) << run.err;
-    return RunCommand("compare --setup mjcf/voice_coil --record " +
-                      File(hold + "/record.csv"))
-        .out;
-  };
-  const std::string note = "i: taken to go straight from sample to sample";
-  EXPECT_THAT(compared("linear"), HasSubstr(note));
-  EXPECT_THAT(compared("zero"), ::testing::Not(HasSubstr(note)));
-}
-
 }  // namespace
 }  // namespace mjdiag

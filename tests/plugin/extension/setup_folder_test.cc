@@ -30,13 +30,6 @@ TEST(SetupFolder, OfAnExtendedPlantIsThatMachine) {
   EXPECT_EQ(read.linear().D, coil.With(changes).linear().D);
 }
 
-TEST(SetupFolder, OfAnExtendedPlantSaysWhatInputsDoBetweenTheirSamples) {
-  const test::TemporaryFolder folder;
-  const Machine coil(ReadSetup(kCoil, {"actuators.i.hold=\"linear\""}));
-  WriteExtendedSetup(folder.path(), kCoil, coil, {});
-  EXPECT_EQ(ReadSetup(folder.path()).channels.Actuator("i").hold, Hold::kLinear);
-}
-
 TEST(SetupFolder, HasAPythonFileWhereThePlantCarriesWhatMujocoDoesNotHave) {
   const test::TemporaryFolder folder;
   const Machine coil(ReadSetup(kCoil));

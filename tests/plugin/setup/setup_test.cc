@@ -71,8 +71,7 @@ TEST_F(SetupFile, FillsTheChannelsInTheOrderOfTheFile) {
 TEST_F(SetupFile, FillsWhatSwitchesActuatorsAndHowInputsGoOnBetweenSamples) {
   const auto plain = ReadSetup(folder_);
   EXPECT_EQ(plain.channels.Actuator("u").enabled_by, "");
-  EXPECT_EQ(plain.channels.Actuator("u").hold, std::nullopt);
-  EXPECT_EQ(plain.channels.Actuator("u").HoldOrZero(), Hold::kZero);
+  EXPECT_EQ(plain.channels.Actuator("u").hold, Hold::kZero);
   EXPECT_THAT(plain.channels.Switches(), IsEmpty());
   const auto setup = ReadSetup(
       folder_, {R"(actuators.u.enabled_by="on")", R"(actuators.u.hold="linear")",
