@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "mjdiag/discovery/hypotheses/candidate.h"
+#include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "support/arm.h"
 
@@ -18,14 +18,15 @@ using Eigen::VectorXd;
 
 bool IsOver() { return false; }
 
-/// An arm with viscous friction of 0.05 N m s/rad at its elbow, two runs of it.
+/// An arm with viscous friction of 0.05 N m s/rad at its elbow, two runs of it in the steps of its
+/// model.
 class ValuesThatPredict : public ::testing::Test {
  protected:
   static constexpr double kFriction = 0.05;
   static constexpr const char* kDamper = "viscous_friction@elbow:coefficient=0.05";
 
   MeasuredRun Measured(std::uint64_t seed) const {
-    return ToMeasuredRun(arm_.setup(), test::Arm::Measure({kDamper}, 1.0, 8, seed));
+    return ToMeasuredRun(arm_.setup(), test::Arm::Measure({kDamper}, 1.0, 2, seed));
   }
   std::optional<BetterValues> BetterThan(double friction) const {
     const AnswerData data{arm_.machine, run_, sd_, blocks_};
@@ -43,7 +44,9 @@ class ValuesThatPredict : public ::testing::Test {
   test::Arm arm_;
   VectorXd sd_ = VectorXd::Constant(2, test::Arm::kNoise);
   SplitRun run_{Measured(1), Measured(2), {0}, 1.0};
-  std::vector<Block> blocks_ = BlocksOf(arm_.machine, ListCandidates(arm_.machine), {});
+  // Sized for this run.
+  std::vector<Block> blocks_ =
+      Explain(arm_.machine, run_.seen, sd_, {.seconds = 10.0}).blocks;
 };
 
 TEST_F(ValuesThatPredict, TakeThePlaceOfThoseThatDoNot) {
