@@ -85,16 +85,14 @@ class CurveOf {
       : sign_(moving.speed.array().sign()),
         A_(moving.speed.size(), 3),
         speeds_(speeds) {
-    // What springs or creeps before it slides is no dry friction: where it hardly moves says
-    // nothing of that.
-    constexpr double kSlides =
-        0.05;  // of the greatest speed but for a twentieth of the time
+    // What springs or creeps before it slides is no dry friction: where it is slower than a
+    // twentieth of the greatest speed, but for a twentieth of the time, says nothing of that.
+    constexpr double kSlides = 0.05;
     VectorXd all = moving.speed.cwiseAbs();
     std::ranges::sort(all);
-    slides_ = (moving.speed.cwiseAbs().array() > kSlides * all[19 * all.size() / 20])
-                  .cast<double>();
+    const double least = kSlides * all[19 * all.size() / 20];
     A_ << sign_, moving.speed, VectorXd::Ones(sign_.size());
-    A_ = slides_.asDiagonal() * A_;
+    A_.array().colwise() *= (moving.speed.cwiseAbs().array() > least).cast<double>();
     normal_.compute(A_.transpose() * A_);
     near_.resize(static_cast<std::size_t>(speeds.size()));
     for (Index i = 0; i < moving.speed.size(); ++i) {
@@ -131,7 +129,6 @@ class CurveOf {
   MatrixXd A_;
   Eigen::LDLT<MatrixXd> normal_;
   VectorXd speeds_;
-  VectorXd slides_;          // 1 where it does
   std::vector<Sides> near_;  // samples that are nearer to a speed than to the others
 };
 

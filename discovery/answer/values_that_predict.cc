@@ -15,6 +15,17 @@ namespace mjdiag {
 
 using Eigen::Index;
 
+Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen) {
+  const Index skip = data.machine.setup().compare.skip_samples;
+  const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
+  std::vector<Index> skips;
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
+                            : std::max(skip, data.run.seen_of[r]));
+  }
+  return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen, skips);
+}
+
 namespace {
 
 /// Behind which nothing lasts: latent forces as large as what is missing, new in every tick.
@@ -46,21 +57,6 @@ double LogRatio(const Prediction& one, const Prediction& other) {
   }
   return ratio;
 }
-
-}  // namespace
-
-Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen) {
-  const Index skip = data.machine.setup().compare.skip_samples;
-  const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
-  std::vector<Index> skips;
-  for (std::size_t r = 0; r < run.records.size(); ++r) {
-    skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
-                            : std::max(skip, data.run.seen_of[r]));
-  }
-  return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen, skips);
-}
-
-namespace {
 
 /// Behind the noise of the answer, or from there on where the machine does not stay with that.
 FilterPath Followed(const Machine& machine, const MeasuredRun& run,

@@ -2,7 +2,6 @@
 // regression for every change.
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "mjdiag/discovery/regression/move_search.h"
