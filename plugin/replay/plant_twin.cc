@@ -75,7 +75,8 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
       effects_(machine.channels(), machine.plant(), machine.effects()),
       friction_(machine.channels(), machine.plant(), FrictionOf(machine.effects())),
       moved_rest_(machine.linear(), PartsOf(uncertain_), unknowns()),
-      factor_(machine.linear().M.rows()) {
+      moments_(TendonMoments(machine.plant(), machine.rest().data())),
+      maps_(moments_) {
   StartedPlant plant = StartPlant(machine, {});
   model_ = std::move(plant.model);
   data_ = std::move(plant.data);
@@ -121,21 +122,13 @@ PlantTwin::PlantTwin(const Machine& machine, UncertainMachine uncertain,
     }
     numbers_.push_back(std::move(number));
   }
-  moments_ = TendonMoments(*model_, machine.rest().data());
   for (const UncertainResistance& known : uncertain_.resistances) {
     resistances_.push_back({model_->jnt_dofadr[known.joint], known.unknown});
   }
   place_ = PlacementOf(linear);
   state_ = VectorXd::Zero(2 * nv);
   before_ = acceleration_ = work_force_ = VectorXd::Zero(nv);
-  for (Map& map : maps_) {
-    map.QV = MatrixXd::Zero(WideRows(nv), 2 * nv);
-    map.G = MatrixXd::Zero(WideRows(nv), nv);
-  }
   lifted_ = by_force_ = VectorXd::Zero(WideRows(nv));
-  inertia_ = identity_ = work_ = MatrixXd::Identity(nv, nv);
-  stick_r_.assign(static_cast<std::size_t>(nv + moments_.cols()), 0.0);
-  stick_rb_ = stick_r_;
   tone_ = VectorXd::Zero(nu);
   outputs_.resize(static_cast<std::size_t>(ny));
   drive_ = force_ = MatrixXd::Zero(nv, p);
@@ -158,35 +151,12 @@ void PlantTwin::SetParameters() noexcept {
   for (Resistance& resistance : resistances_) {
     resistance.times = std::exp(theta_[resistance.unknown]);
   }
-  for (Map& map : maps_) map.known = false;
+  maps_.Forget();
 }
 
-void PlantTwin::AddSticking(std::uint64_t sticking, const std::vector<double>& r,
-                            MatrixXd& matrix) const noexcept {
-  const Index nv = matrix.rows();
-  for (Index j = 0; j < std::ssize(r); ++j) {
-    if ((sticking >> j & 1) == 0) continue;
-    const double stiff = r[static_cast<std::size_t>(j)];
-    if (j < nv) {
-      matrix(j, j) += stiff;
-      continue;
-    }
-    for (Index i = 0; i < nv; ++i) {
-      matrix.col(i) += stiff * moments_(i, j - nv) * moments_.col(j - nv);
-    }
-  }
-}
-
-const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
-  for (const Map& map : maps_) {
-    if (map.known && map.sticking == sticking) return map;
-  }
-  Map& map = maps_[next_map_];
-  next_map_ = (next_map_ + 1) % maps_.size();
-  map.sticking = sticking;
-  map.known = true;
+const StickingMaps::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
+  if (const StickingMaps::Map* const known = maps_.Find(sticking)) return *known;
   const Index nv = model_->nv;
-  const double h = model_->opt.timestep;
   D_ = D_rest_;
   D_.diagonal() += VectorXd::Map(model_->dof_damping, nv);
   K_ = K_rest_;
@@ -198,24 +168,7 @@ const PlantTwin::Map& PlantTwin::MapOf(std::uint64_t sticking) noexcept {
     if (number.part.K.size() > 0) K_ += number.change * number.part.K;
     if (number.part.D.size() > 0) D_ += number.change * number.part.D;
   }
-  // G = h (M + h D)^-1 M W^-1
-  inertia_ = M_now_;
-  AddSticking(sticking, stick_r_, inertia_);
-  factor_.compute(inertia_);
-  work_ = identity_;
-  factor_.solveInPlace(work_);
-  auto G = map.G.topRows(nv);
-  G.noalias() = M_now_ * work_;
-  inertia_ = M_now_ + h * D_;
-  factor_.compute(inertia_);
-  factor_.solveInPlace(G);
-  G *= h;
-  map.QV.topLeftCorner(nv, nv).noalias() = -G * K_;
-  AddSticking(sticking, stick_rb_, D_);
-  auto V = map.QV.topRightCorner(nv, nv);
-  V = identity_;
-  V.noalias() -= G * D_;
-  return map;
+  return maps_.Make(sticking, M_now_, K_, D_, model_->opt.timestep);
 }
 
 void PlantTwin::Reset() noexcept {
@@ -419,9 +372,8 @@ void PlantTwin::Substep() noexcept {
     }
     const Index place = type == mjCNSTR_FRICTION_DOF ? at : nv + at;
     sticking |= std::uint64_t{1} << place;
-    stick_r_[static_cast<std::size_t>(place)] = data_->efc_D[row];
-    stick_rb_[static_cast<std::size_t>(place)] =
-        data_->efc_D[row] * data_->efc_KBIP[4 * row + 1];
+    const double r = data_->efc_D[row];
+    maps_.Hold(place, r, r * data_->efc_KBIP[4 * row + 1]);
   }
   acceleration_ = (VectorXd::Map(data_->qvel, nv) - before_) / model_->opt.timestep;
   for (const Number& number : numbers_) {
@@ -437,7 +389,7 @@ void PlantTwin::Substep() noexcept {
     work_force_.noalias() = -number.part.M * acceleration_;
     AddWorkForce(number);
   }
-  const Map& map = MapOf(sticking);
+  const StickingMaps::Map& map = MapOf(sticking);
   Lift(map, acting(), theta_.size() - start_unknowns(), force_, S_);
   if (!drifts_) return;
   for (Index i = 0; i < drift_force_.cols(); ++i) {
@@ -447,8 +399,8 @@ void PlantTwin::Substep() noexcept {
   Lift(map, S_rate_.cols(), S_rate_.cols(), drift_force_, S_rate_);
 }
 
-void PlantTwin::Lift(const Map& map, Index count, Index forced, const MatrixXd& force,
-                     MatrixXd& S) noexcept {
+void PlantTwin::Lift(const StickingMaps::Map& map, Index count, Index forced,
+                     const MatrixXd& force, MatrixXd& S) noexcept {
   const Index nv = model_->nv;
   for (Index i = 0; i < count; ++i) {
     WideProduct(map.QV, S.col(i).data(), lifted_.data());

@@ -16,9 +16,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,6 +26,7 @@
 #include "mjdiag/plugin/effects/active_effect.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/plugin/plant/mujoco_model.h"
+#include "mjdiag/plugin/replay/sticking_maps.h"
 #include "mjdiag/plugin/replay/uncertain_machine.h"
 
 namespace mjdiag {
@@ -74,16 +73,11 @@ class PlantTwin final : public Twin {
     double times = 1.0;
     double force = 0.0;
   };
-  /// The map of a step with these joints sticking, S_v' = [Q V] S + G f.
-  struct Map {
-    std::uint64_t sticking = 0;
-    bool known = false;
-    Eigen::MatrixXd QV, G;  // in whole registers
-  };
 
   void Reset() noexcept;
   void SetParameters() noexcept;
-  const Map& MapOf(std::uint64_t sticking) noexcept;
+  /// Of a step in which these joints, then tendons, stick.
+  const StickingMaps::Map& MapOf(std::uint64_t sticking) noexcept;
   /// What effects do in a step, their friction as it is known to be.
   void Act() noexcept;
   void AddTickForces() noexcept;
@@ -92,7 +86,7 @@ class PlantTwin final : public Twin {
   /// After a step: of what depends on where it went.
   void Substep() noexcept;
   /// Sensitivities over a step, the first `forced` of them under forces.
-  void Lift(const Map& map, Eigen::Index count, Eigen::Index forced,
+  void Lift(const StickingMaps::Map& map, Eigen::Index count, Eigen::Index forced,
             const Eigen::MatrixXd& force, Eigen::MatrixXd& S) noexcept;
   /// Columns of the unknowns of that number.
   void AddForce(Eigen::MatrixXd& forces, const Number& number, Eigen::Index dof,
@@ -100,9 +94,6 @@ class PlantTwin final : public Twin {
   /// Of the force in work_force_, at a unit of the number.
   void AddWorkForce(const Number& number) noexcept;
   void AddFriction(int type, Eigen::Index at, double force) noexcept;
-  /// A matrix with r e e^T, r J^T J of what sticks in it.
-  void AddSticking(std::uint64_t sticking, const std::vector<double>& r,
-                   Eigen::MatrixXd& matrix) const noexcept;
 
   Machine machine_;
   UncertainMachine uncertain_;
@@ -124,11 +115,7 @@ class PlantTwin final : public Twin {
   Eigen::MatrixXd moments_;  // of tendons at rest, nv x tendons
 
   Eigen::MatrixXd place_;  // of coordinates by readings, nq x ny
-  std::array<Map, 16> maps_;
-  std::size_t next_map_ = 0;
-  Eigen::MatrixXd inertia_, identity_, work_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
-  std::vector<double> stick_r_, stick_rb_;  // by dof, then by tendon
+  StickingMaps maps_;
 
   double time_ = 0.0;
   Eigen::VectorXd tone_, before_, acceleration_, work_force_;
