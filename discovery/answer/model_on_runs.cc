@@ -1,8 +1,10 @@
 #include "mjdiag/discovery/answer/model_on_runs.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
@@ -129,6 +131,17 @@ void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
     if (path.deviance < one.seen.deviance) one.seen = std::move(path);
   } catch (const NumericalError&) {
   }
+}
+
+Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen) {
+  const Eigen::Index skip = data.machine.setup().compare.skip_samples;
+  const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
+  std::vector<Eigen::Index> skips;
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
+                            : std::max(skip, data.run.seen_of[r]));
+  }
+  return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen, skips);
 }
 
 }  // namespace mjdiag

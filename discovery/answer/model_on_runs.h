@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mjdiag/discovery/answer/answer_data.h"
+#include "mjdiag/discovery/comparison/prediction.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/model_fit.h"
 #include "mjdiag/plugin/replay/force_filter.h"
@@ -48,5 +49,15 @@ ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
 /// suits the other may suit it as well.
 void LookBehindNoiseOf(const ModelOnRuns& other, const AnswerData& data,
                        const IsTimeOver& is_over, ModelOnRuns& one);
+
+/// How a model predicts what fits saw, or did not see.
+Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen);
+
+/// Answers are judged by predictions over 0.1 s at most: what people who control a machine
+/// look ahead, and so short that one that runs away has not yet.
+inline bool IsWithinHorizon(double horizon) {
+  constexpr double kHorizon = 0.1;  // [s]
+  return horizon <= kHorizon * (1.0 + 1e-9);
+}
 
 }  // namespace mjdiag

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mjdiag/discovery/answer/values_that_predict.h"
-#include "mjdiag/discovery/comparison/prediction.h"
+#include "mjdiag/discovery/answer/model_on_runs.h"
 #include "mjdiag/discovery/mismatch_figures.h"
 
 namespace mjdiag {
@@ -16,8 +15,6 @@ namespace mjdiag {
 using Eigen::Index;
 
 namespace {
-
-constexpr double kHorizon = 0.1;  // [s]
 
 std::map<std::string, double> ErrorsOver(const Prediction& prediction, Index horizon) {
   std::map<std::string, double> errors;
@@ -48,8 +45,7 @@ void AddPredictions(const AnswerData& data, const UnseenJudgement& judged,
   }
   Index horizon = 0;
   for (Index h = 0; h < longest; ++h) {
-    if (all.front().horizons[static_cast<std::size_t>(h)] > kHorizon * (1.0 + 1e-9))
-      break;
+    if (!IsWithinHorizon(all.front().horizons[static_cast<std::size_t>(h)])) break;
     if (std::ranges::all_of(all, [&](const auto& one) { return IsFinite(one, h); })) {
       horizon = h;
     }

@@ -15,17 +15,6 @@ namespace mjdiag {
 
 using Eigen::Index;
 
-Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen) {
-  const Index skip = data.machine.setup().compare.skip_samples;
-  const MeasuredRun& run = of_seen ? data.run.seen : data.run.unseen;
-  std::vector<Index> skips;
-  for (std::size_t r = 0; r < run.records.size(); ++r) {
-    skips.push_back(of_seen ? std::min(skip, run.SamplesOf(r) / 2)
-                            : std::max(skip, data.run.seen_of[r]));
-  }
-  return Predict(data.With(one.fit.model), run, of_seen ? one.seen : one.unseen, skips);
-}
-
 namespace {
 
 /// Behind which nothing lasts: latent forces as large as what is missing, new in every tick.
@@ -41,13 +30,12 @@ FilterNoise OfQuickForces(const FilterPath& path) {
   return noise;
 }
 
-/// Mean logarithm of the errors of one over those of another, over the longest horizon of at most
-/// 0.1 s that both stay with.
+/// Mean logarithm of the errors of one over those of another, over the longest horizon
+/// within that of answers that both stay with.
 double LogRatio(const Prediction& one, const Prediction& other) {
-  constexpr double kMostAhead = 0.1 * (1.0 + 1e-9);  // [s]
   double ratio = 0.0;
   const std::size_t horizons = std::min(one.horizons.size(), other.horizons.size());
-  for (std::size_t h = 0; h < horizons && one.horizons[h] <= kMostAhead; ++h) {
+  for (std::size_t h = 0; h < horizons && IsWithinHorizon(one.horizons[h]); ++h) {
     double sum = 0.0;
     for (std::size_t i = 0; i < one.sensors.size(); ++i) {
       const auto place = static_cast<Index>(h);

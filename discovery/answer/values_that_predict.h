@@ -15,12 +15,8 @@
 
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/model_on_runs.h"
-#include "mjdiag/discovery/comparison/prediction.h"
 
 namespace mjdiag {
-
-/// How a model predicts what fits saw, or did not see.
-Prediction PredictionOf(const AnswerData& data, const ModelOnRuns& one, bool of_seen);
 
 struct BetterValues {
   ModelOnRuns answer;
