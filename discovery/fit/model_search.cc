@@ -181,11 +181,16 @@ void ModelSearch::Prepare() {
 }
 
 void ModelSearch::StepOn() {
-  while (!IsOver() && Step()) {
-    char text[80];
-    std::snprintf(text, sizeof text, "%.1f  ", found_.score);
-    Say(text + ModelText(found_.blocks, found_.fit.model));
-    if (options_.better) options_.better(found_);
+  try {
+    while (!IsOver() && Step()) {
+      char text[80];
+      std::snprintf(text, sizeof text, "%.1f  ", found_.score);
+      Say(text + ModelText(found_.blocks, found_.fit.model));
+      if (options_.better) options_.better(found_);
+    }
+  } catch (const NumericalError&) {
+    // A machine that diverges beside what is measured, or the wish to end: what was found
+    // until then stays, and the next look begins there.
   }
 }
 
@@ -235,10 +240,7 @@ void ModelSearch::LookAtAll() {
 
 Explained ModelSearch::Run() {
   Prepare();
-  try {
-    if (IsFirstLook()) StepOn();
-  } catch (const NumericalError&) {
-  }
+  if (IsFirstLook()) StepOn();
   try {
     LookAtAll();
     StepOn();
@@ -264,8 +266,7 @@ Explained ModelSearch::Run() {
       StepOn();
     }
   } catch (const NumericalError&) {
-    // A machine that diverges beside what is measured, or the wish to end: what was found
-    // until then stays.
+    // All of the run as one: what was found by a part of it stays.
   }
   found_.fit = WithoutIdle(found_.blocks, std::move(found_.fit));
   found_.steps = steps_;
