@@ -38,6 +38,7 @@ ForceKalman::ForceKalman(const std::vector<Index>& dofs, const FilterNoise& nois
       sample_time * With(noise.memory, noise.clock_memory).cwiseInverse();
   rho_ = (-decay.array()).exp();
   variance_ = With(noise.size, noise.clock).cwiseAbs2();
+  white_ = noise.WhiteVariance(sample_time);
   // 1 - rho^2 without cancellation where the memory is long.
   renewal_ = -(-2.0 * decay.array()).expm1() * variance_.array();
 }
@@ -63,8 +64,8 @@ void ForceKalman::MoveTo(const TickTangent& tangent) {
   tangent_ = &tangent;
   B_ = ForcesOf(tangent.B, dofs_);
   D_ = ForcesOf(tangent.D, dofs_);
-  const auto forces = B_.leftCols(noise_.white.size());
-  Q_.noalias() = forces * noise_.white.cwiseAbs2().asDiagonal() * forces.transpose();
+  const auto forces = B_.leftCols(white_.size());
+  Q_.noalias() = forces * white_.asDiagonal() * forces.transpose();
 }
 
 void ForceKalman::Expect(Index sensor, bool late, double innovation, double speed) {
@@ -75,9 +76,9 @@ void ForceKalman::Expect(Index sensor, bool late, double innovation, double spee
   if (late) {
     c_.tail(nf) = D_.row(sensor).transpose();
     R += D_.row(sensor)
-             .head(noise_.white.size())
-             .cwiseProduct(noise_.white.transpose())
-             .squaredNorm();
+             .head(white_.size())
+             .cwiseAbs2()
+             .dot(white_.transpose());
   } else {
     c_.tail(nf).setZero();
   }

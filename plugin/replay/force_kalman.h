@@ -67,6 +67,7 @@ class ForceKalman {
   const FilterNoise& noise_;
   Eigen::VectorXd rho_;
   Eigen::VectorXd variance_;  // stationary, of [w; t]
+  Eigen::VectorXd white_;     // variances, nf
   Eigen::VectorXd renewal_;   // of it what is new in a tick
   const TickTangent* tangent_ = nullptr;
   Eigen::MatrixXd B_, D_;  // of the latent forces and of the clock, which has none

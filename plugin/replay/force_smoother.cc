@@ -17,15 +17,17 @@ namespace {
 /// Backwards over one record.
 class BackwardPass {
  public:
-  BackwardPass(const FilterPath& path, const std::vector<FilterGains>& gains,
-               Index first, SmoothedForces& smoothed)
+  BackwardPass(const FilterPath& path, const FilterNoise& noise,
+               const std::vector<FilterGains>& gains, Index first,
+               SmoothedForces& smoothed)
       : path_(path),
+        noise_(noise),
         gains_(gains),
         first_(first),
         smoothed_(smoothed),
         n_(path.pulled.rows()),
         nf_(path.dof_count()),
-        rho_(ForceKalman(path.dofs, path.noise, path.sample_time).rho()),
+        rho_(ForceKalman(path.dofs, noise, path.sample_time).rho()),
         r_(VectorXd::Zero(n_)),
         W_(MatrixXd::Zero(n_, n_)) {}
 
@@ -41,6 +43,7 @@ class BackwardPass {
   void ThroughReadings(Index k, const FilterGains& gain, bool late);
 
   const FilterPath& path_;
+  const FilterNoise& noise_;
   const std::vector<FilterGains>& gains_;
   Index first_;
   SmoothedForces& smoothed_;
@@ -60,7 +63,7 @@ void BackwardPass::ThroughTick(Index k) {
     F.col(ns + j).head(ns) = tangent.B.col(path_.dofs[static_cast<std::size_t>(j)]);
   }
   F.diagonal().tail(nf_ + 1) = rho_;
-  smoothed_.value.col(k) = path_.noise.white.cwiseAbs2().cwiseProduct(
+  smoothed_.value.col(k) = noise_.white.cwiseAbs2().cwiseProduct(
       F.block(0, ns, ns, nf_).transpose() * r_.head(ns));
   r_ = (F.transpose() * r_).eval();
   // What rounding makes skew would grow.
@@ -114,14 +117,17 @@ SmoothedForces SmoothForces(const FilterPath& path) {
                           VectorXd::Zero(path.dof_count()),
                           MatrixXd::Zero(path.pulled.rows() - path.dof_count() - 1,
                                          std::ssize(path.first))};
+  // The floor is a doubt about laws, and no force that is there.
+  FilterNoise noise = path.noise;
+  noise.floor = 0.0;
   const std::size_t records = path.first.size();
   std::vector<VectorXd> variances(records);
   ParallelFor(static_cast<int>(records), [&](int number) {
     const auto r = static_cast<std::size_t>(number);
     const Index first = path.first[r];
     const std::vector<FilterGains> gains =
-        GainsAlong(path, path.noise, first, path.EndOf(r) - first);
-    BackwardPass backward(path, gains, first, smoothed);
+        GainsAlong(path, noise, first, path.EndOf(r) - first);
+    BackwardPass backward(path, noise, gains, first, smoothed);
     variances[r] = backward.Run();
     smoothed.start.col(number) = backward.Start(path.starts[r].sd);
   });
