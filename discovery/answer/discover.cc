@@ -136,6 +136,24 @@ void NoteInputNoise(const Machine& machine, const SplitRun& measured,
   }
 }
 
+/// Waves over time that come round a few times each are, three at once, a course of time as a
+/// Fourier series has it: any law along a motion that repeats itself as little looks so.
+bool IsCourseOfTime(const std::vector<FoundCause>& causes, const MeasuredRun& run) {
+  constexpr double kFewTimes = 10.0;
+  constexpr Index kSeries = 3;
+  Index longest = 0;
+  for (std::size_t r = 0; r < run.records.size(); ++r) {
+    longest = std::max(longest, run.SamplesOf(r));
+  }
+  const double seconds = run.sample_time * static_cast<double>(longest);
+  return std::ranges::count_if(causes, [&](const FoundCause& found) {
+           return found.cause.effect->variable() == LawVariable::kTime &&
+                  std::ranges::any_of(found.parameters, [&](const CauseParameter& one) {
+                    return one.name == "frequency" && one.value * seconds < kFewTimes;
+                  });
+         }) >= kSeries;
+}
+
 /// What the budget did not allow.
 void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               const Explained& explained, const UnseenJudgement& judged,
@@ -201,7 +219,8 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   AddResistances(data, judged.answer, errors, discovery);
   // A force without a name is described, not explained.
   if (discovery.verdict == DiscoveryVerdict::kExplained &&
-      !std::ranges::all_of(discovery.causes, &FoundCause::HasName)) {
+      (!std::ranges::all_of(discovery.causes, &FoundCause::HasName) ||
+       IsCourseOfTime(discovery.causes, data.run.seen))) {
     discovery.verdict = DiscoveryVerdict::kPartlyExplained;
   }
   const bool is_left = discovery.verdict == DiscoveryVerdict::kPartlyExplained ||

@@ -238,6 +238,7 @@ std::vector<Instead> UnseenJudge::InsteadOf(std::size_t place) const {
 bool UnseenJudge::ExchangeOne() {
   const Model model = judged_.answer.fit.model;
   std::optional<ModelOnRuns> best;
+  double most = 0.0;
   double gained = 0.0;
   std::vector<std::pair<std::size_t, Instead>> exchanges;
   std::vector<Model> others;
@@ -262,9 +263,10 @@ bool UnseenJudge::ExchangeOne() {
     judged_.exchanges[m].push_back({one.block, values, loss});
     // The simpler one where it is as good.
     const bool is_simpler = one.values.size() < model[m].values.size();
-    const double least = is_simpler ? 0.0 : kLeastGain;
-    if (!(loss.Total() < -least) || loss.Total() > -gained) continue;
+    const double gain = (is_simpler ? kLeastGain : -kLeastGain) - loss.Total();
+    if (!(gain > most)) continue;
     if (!IsAllowed(data_.blocks[one.block], values)) continue;
+    most = gain;
     gained = -loss.Total();
     best = std::move(fitted[i]);
   }

@@ -84,6 +84,12 @@ const Moves& ModelSearch::MovesNow(Standing& standing) {
   return standing.moves.emplace(at_every_shape_, std::move(moves)).first->second;
 }
 
+bool ModelSearch::HasTimeForFits() const {
+  constexpr double kRuns = 200.0;  // that fits of a few rivals take, about
+  constexpr double kShareOfTime = 0.15;
+  return kRuns * seconds_of_run_ < kShareOfTime * (seconds_ - time_.Seconds());
+}
+
 void ModelSearch::ChooseFriction() {
   // What was asked of all but the same friction is known.
   constexpr double kAlike = 0.2;
@@ -93,11 +99,8 @@ void ModelSearch::ChooseFriction() {
   }
   if (AreNear(rubs, asked_forms_of_, kAlike)) return;
   asked_forms_of_ = rubs;
-  constexpr double kRuns = 200.0;  // that a fit of every form takes, about
-  constexpr double kShareOfTime = 0.15;
-  const bool has_time =
-      kRuns * seconds_of_run_ < kShareOfTime * (seconds_ - time_.Seconds());
-  auto other = WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, has_time);
+  auto other =
+      WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, HasTimeForFits());
   if (!other) return;
   Say("joints that stand: " + Difference(other->score()) + "  " +
       ModelText(found_.blocks, other->fit.model));
@@ -137,6 +140,12 @@ bool ModelSearch::Step() {
       move = SmoothedInputs();
     }
     looks_at_forces_ = move.has_value();
+    // What a drive does is no force along the motion: where nothing is known yet, what looks
+    // like one may be that.
+    if (move && found_.fit.model.empty() && HasTimeForFits()) {
+      auto other = BestMove(standing);
+      if (other && other->settled.score() < move->settled.score()) move = other;
+    }
   }
   if (!move) move = BestMove(standing);
   if (!move && asks_inputs) move = SmoothedInputs();

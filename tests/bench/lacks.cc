@@ -1,5 +1,6 @@
 // What one regression along the filtered motion says that a machine lacks, of any setup and
-// records: lacks SETUP RECORD... [EFFECT@SITE:VALUES]...
+// records: lacks SETUP RECORD... [EFFECT@SITE:VALUES]...; SECONDS_OF_WORK in the environment is
+// its time, and with NO_DOUBT numbers of the plant are known.
 
 #include <cstdio>
 #include <cstdlib>
@@ -35,6 +36,7 @@ int Main(int argc, char** argv) {
   if (const char* seconds = std::getenv("SECONDS_OF_WORK")) {
     options.seconds = std::atof(seconds);
   }
+  if (std::getenv("NO_DOUBT")) options.numbers.emplace();
   options.progress = [&](const std::string& text) {
     std::printf("[%.1f s] %s\n", Now() - begin, text.c_str());
     std::fflush(stdout);

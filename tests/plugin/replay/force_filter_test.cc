@@ -245,6 +245,30 @@ TEST(ForceFilter, OfAnotherNoiseIsTheLinearPassAlongAnyPath) {
               1e-6 * std::abs(exact.deviance));
 }
 
+// What is missing is as little known in what is quick as if that much of it were white, and no
+// force of that size is there for it.
+TEST(ForceFilter, HasAFloorUnderTheSpectrumOfWhatIsMissing) {
+  const Slide slide;
+  const MeasuredRun run =
+      slide.Measure([](double t) { return 0.7 * std::sin(2.0 * t); });
+  const auto starts = FilterStarts(slide.machine, run, VectorXd::Constant(1, kNoise));
+  const auto followed = [&](const FilterNoise& noise) {
+    return RunForceFilter(slide.machine, run, {0}, starts, noise);
+  };
+  const FilterNoise floored = SomeNoise();
+  ASSERT_GT(floored.floor, 0.0);
+  FilterNoise bare = floored;
+  bare.floor = 0.0;
+  FilterNoise white = bare;
+  white.white = floored.WhiteVariance(run.sample_time).cwiseSqrt();
+  const FilterPath path = followed(floored);
+  EXPECT_DOUBLE_EQ(path.deviance, followed(white).deviance);
+  EXPECT_GT(std::abs(path.deviance - followed(bare).deviance), 1.0);
+  // The machine is linear: smoothed along any path.
+  EXPECT_LT((SmoothForces(path).value - SmoothForces(followed(bare)).value).norm(),
+            1e-6 * SmoothForces(path).value.norm());
+}
+
 TEST(ForceSmoother, FindsAForceThatIsMissing) {
   const Slide slide;
   const auto force = [](double t) { return t > 1.5 ? -0.6 : 0.9; };

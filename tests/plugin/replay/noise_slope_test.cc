@@ -179,13 +179,17 @@ TEST(NoiseSlope, IsThatOfAMachineThatFallsToo) {
 // Behind a noise that is far too small all readings are beyond the corner, and by first order
 // nothing holds the machine: a step down the slope gains all the same.
 TEST(NoiseSlope, PointsDownWhereAllReadingsAreBeyondTheCorner) {
+  const auto bare = [](FilterNoise noise) {
+    noise.floor = 0.0;
+    return noise;
+  };
   const Machine machine = Upright();
-  const FilterPath path = PathUpright(machine, NoiseUpright(1e-4, 0.3), 2500);
-  const FilterNoise small = NoiseUpright(1e-6, 1e-3);
+  const FilterPath path = PathUpright(machine, bare(NoiseUpright(1e-4, 0.3)), 2500);
+  const FilterNoise small = bare(NoiseUpright(1e-6, 1e-3));
   const NoiseSlope slope = SlopeAlong(path, small, 0, 2500);
   const VectorXd step = -0.01 * slope.slope / slope.slope.norm();
-  const double there =
-      Score(path, NoiseOf(LogarithmsOf(small) + step), 0, 2500).deviance.sum();
+  const FilterNoise stepped = bare(NoiseOf(LogarithmsOf(small) + step));
+  const double there = Score(path, stepped, 0, 2500).deviance.sum();
   const double promised = 0.01 * slope.slope.norm();
   EXPECT_GT(slope.deviance - there, 0.2 * promised);
   EXPECT_LT(slope.deviance - there, 5.0 * promised);
