@@ -43,6 +43,8 @@ namespace {
 constexpr double kShareOfSearch = 0.7;
 /// And both together, the rest is for figures.
 constexpr double kShareOfJudgement = 0.85;
+/// And with the pictures of laws.
+constexpr double kShareOfLaws = 0.93;
 
 /// Seconds since a discovery began, against its budget.
 class RunningTime {
@@ -157,13 +159,14 @@ bool IsCourseOfTime(const std::vector<FoundCause>& causes, const MeasuredRun& ru
 /// What the budget did not allow.
 void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               const Explained& explained, const UnseenJudgement& judged,
-              Discovery& discovery) {
+              bool has_all_laws, Discovery& discovery) {
   Budget& budget = discovery.budget;
   budget = {time.Used(), options.budget, time.IsStopped(), {}};
   if (explained.is_cut_short) budget.left_out.push_back("further causes");
   if (judged.is_cut_short) {
     budget.left_out.push_back("whether unseen data ask for every member of the answer");
   }
+  if (!has_all_laws) budget.left_out.push_back("pictures of some laws");
   if (options.figures && discovery.ladder.empty()) {
     budget.left_out.push_back("figures of every member by itself");
   }
@@ -231,6 +234,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
   }
   AddNotes(
       data, judged, [&] { return options.figures && !time.IsOver(); }, discovery);
+  bool has_all_laws = true;
   if (options.figures || discovery.verdict == DiscoveryVerdict::kUnexplained) {
     time.Say("unexplained forces", 0.8);
     const ObservedMotion motion = MotionOfAnswer(data, judged);
@@ -238,7 +242,10 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     if (is_left && !time.IsOver()) {
       AddResidualDependence(data, judged, motion, discovery);
     }
-    if (options.figures) AddLawPlots(data, judged, motion, discovery);
+    if (options.figures) {
+      has_all_laws = AddLawPlots(
+          data, judged, motion, [&] { return time.IsOver(kShareOfLaws); }, discovery);
+    }
   }
   if (options.figures) {
     time.Say("figures", 0.9);
@@ -250,7 +257,7 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     if (!time.IsOver()) AddLadderOf(data, judged, measurements, follows, discovery);
     if (!time.IsOver()) AddMinimumDetectableFaults(data, judged, discovery);
   }
-  NoteTime(time, options, explained, judged, discovery);
+  NoteTime(time, options, explained, judged, has_all_laws, discovery);
   return discovery;
 }
 

@@ -1,6 +1,7 @@
 #include "mjdiag/discovery/answer/force_figures.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -99,16 +100,23 @@ void AddForces(const AnswerData& data, const UnseenJudgement& judged,
   }
 }
 
-void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
-                 const ObservedMotion& motion, Discovery& discovery) {
+bool AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
+                 const ObservedMotion& motion, const std::function<bool()>& is_over,
+                 Discovery& discovery) {
   const Model& model = judged.answer.fit.model;
   std::vector<std::size_t> members;  // of every cause
   for (std::size_t m = 0; m < model.size(); ++m) {
     if (data.blocks[model[m].block].candidate) members.push_back(m);
   }
   std::vector<std::optional<LawPlot>> plots(members.size());
+  std::atomic<bool> are_all = true;
   ParallelFor(static_cast<int>(plots.size()), [&](int number) {
     const auto i = static_cast<std::size_t>(number);
+    // Each takes a filter of all of the run.
+    if (is_over()) {
+      are_all = false;
+      return;
+    }
     try {
       plots[i] = LawPlotOf(data, judged, motion, members[i], discovery.causes[i].cause,
                            discovery);
@@ -119,6 +127,7 @@ void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
   for (std::optional<LawPlot>& plot : plots) {
     if (plot) discovery.laws.push_back(std::move(*plot));
   }
+  return are_all;
 }
 
 void AddResidualDependence(const AnswerData& data, const UnseenJudgement& judged,

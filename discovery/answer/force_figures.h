@@ -2,6 +2,8 @@
 // Where a model is wrong and over what: forces that it lacks, laws as curves through what the
 // rest of the model leaves, and what the last rest depends on.
 
+#include <functional>
+
 #include "mjdiag/discovery/answer/answer_data.h"
 #include "mjdiag/discovery/answer/unseen_judgement.h"
 #include "mjdiag/discovery/comparison/disturbance_estimate.h"
@@ -26,8 +28,10 @@ void AddForces(const AnswerData& data, const UnseenJudgement& judged,
 
 /// Of every cause, the force that the machine with all other members lacks, over what the
 /// law is of (law.h): partial residuals. Behind AddForces.
-void AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
-                 const ObservedMotion& motion, Discovery& discovery);
+/// @return whether there was time for all of them
+bool AddLawPlots(const AnswerData& data, const UnseenJudgement& judged,
+                 const ObservedMotion& motion, const std::function<bool()>& is_over,
+                 Discovery& discovery);
 
 /// What the largest of the forces that are left depends on (signature.h). Behind AddForces.
 void AddResidualDependence(const AnswerData& data, const UnseenJudgement& judged,

@@ -193,6 +193,8 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
     tried.pop_back();
   }
+  // Filters of what sticks take seconds.
+  if (IsOver()) return std::nullopt;
   std::vector<std::optional<ConvergedModel>> settled(tried.size());
   for (const bool other_steps : {false, true}) {
     std::vector<ModelFit> fits;

@@ -95,6 +95,7 @@ bool ModelSearch::ChooseSteps(std::optional<double> near) {
     const double at = std::clamp(share, kApart, 1.0 - kApart);
     return ChooseStepsOf({at - kApart, at, at + kApart});
   };
+  if (IsOver()) return false;
   const double before = steps_.without;
   if (!(near ? choose_near(*near) : ChooseStepsOf({0.0, 0.5, 1.0}))) return false;
   for (int round = 0; round < 3 && !IsOver(); ++round) {
