@@ -223,6 +223,9 @@ std::vector<Block> BlocksOf(const Machine& machine,
           ElementName(machine.plant(), ElementOf(number.kind), number.element);
     }
   }
+  // Of one shape: those that are taken in the place of others before anything has looked at
+  // their shapes cost something, too.
+  for (Block& block : blocks) block.price = PriceOf(block, 1);
   return blocks;
 }
 

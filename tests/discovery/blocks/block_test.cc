@@ -6,8 +6,10 @@
 
 #include <cmath>
 
+#include "mjdiag/discovery/hypotheses/candidate_choice.h"
 #include "mjdiag/plugin/effects/registry.h"
 #include "mjdiag/plugin/effects/structure/force_curve.h"
+#include "support/stage.h"
 
 namespace mjdiag {
 namespace {
@@ -26,6 +28,17 @@ TEST(Block, KnowsANumberAtTheEndOfWhatIsKnown) {
     EXPECT_TRUE(IsAllowed(mass, at(kFarthest * 0.1)));
     EXPECT_FALSE(IsAllowed(mass, at(0.91)));
   }
+}
+
+// Laws are taken in the place of others before anything has looked at their own shapes: one that
+// costs nothing would be in the place of any that says as much.
+TEST(Block, CostsSomethingBeforeItIsLookedAt) {
+  const test::Stage stage;
+  const std::vector<Block> blocks =
+      BlocksOf(stage.machine, ChooseCandidates(stage.machine, {}, true),
+               NumbersOf(stage.machine.plant()));
+  ASSERT_FALSE(blocks.empty());
+  for (const Block& block : blocks) EXPECT_GE(block.price, kClaim) << block.name;
 }
 
 /// A curve over a position of 0 to 1, forces over the spread.
