@@ -75,10 +75,7 @@ void ForceKalman::Expect(Index sensor, bool late, double innovation, double spee
   double R = noise_.reading[sensor] * noise_.reading[sensor];
   if (late) {
     c_.tail(nf) = D_.row(sensor).transpose();
-    R += D_.row(sensor)
-             .head(white_.size())
-             .cwiseAbs2()
-             .dot(white_.transpose());
+    R += D_.row(sensor).head(white_.size()).cwiseAbs2().dot(white_.transpose());
   } else {
     c_.tail(nf).setZero();
   }

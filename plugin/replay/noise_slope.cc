@@ -192,9 +192,9 @@ VectorXd Backwards::Slope() const {
         2.0 * size * size * ((1.0 - rho[j] * rho[j]) * by_renewal_[j] + by_start_[j]);
     const double by_memory = rho[j] * path_.sample_time / memory *
                              (by_rho_[j] - 2.0 * rho[j] * size * size * by_renewal_[j]);
-    const double by_floor = j < nf_ ? noise_.floor * size * size * memory /
-                                         path_.sample_time * by_white_[j]
-                                   : 0.0;
+    const double by_floor =
+        j < nf_ ? noise_.floor * size * size * memory / path_.sample_time * by_white_[j]
+                : 0.0;
     slope[j < nf_ ? j : 3 * nf_ + ny] = by_size + 2.0 * by_floor;
     slope[j < nf_ ? nf_ + j : 3 * nf_ + ny + 1] = by_memory + by_floor;
   }

@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 /// The folders with code, but those that hold effects or examples of them.
 const std::vector<std::string>& Folders() {
   static const std::vector<std::string> folders{
-      "signals", "controllers", "diagnosis", "plugin", "discovery",
-      "studies", "watch",       "render",    "report", "app",       "tests/bench"};
+      "signals", "controllers", "diagnosis", "plugin", "discovery",  "studies",
+      "watch",   "render",      "report",    "app",    "tests/bench"};
   return folders;
 }
 
