@@ -162,13 +162,14 @@ void NoteTime(const RunningTime& time, const DiscoverOptions& options,
               bool has_all_laws, Discovery& discovery) {
   Budget& budget = discovery.budget;
   budget = {time.Used(), options.budget, time.IsStopped(), {}};
-  if (explained.is_cut_short) budget.left_out.push_back("further causes");
+  if (explained.is_cut_short) budget.left_out.emplace_back("further causes");
   if (judged.is_cut_short) {
-    budget.left_out.push_back("whether unseen data ask for every member of the answer");
+    budget.left_out.emplace_back(
+        "whether unseen data ask for every member of the answer");
   }
-  if (!has_all_laws) budget.left_out.push_back("pictures of some laws");
+  if (!has_all_laws) budget.left_out.emplace_back("pictures of some laws");
   if (options.figures && discovery.ladder.empty()) {
-    budget.left_out.push_back("figures of every member by itself");
+    budget.left_out.emplace_back("figures of every member by itself");
   }
   if (budget.left_out.empty()) return;
   discovery.notes.push_back(NoteOfBudget(budget, Listed(budget.left_out, " and ")));

@@ -94,7 +94,7 @@ void AddForces(const AnswerData& data, const UnseenJudgement& judged,
     discovery.forces_after =
         ForcesBeside(data.With(judged.answer.fit.model), data.run.seen, path);
   } catch (const NumericalError&) {
-    discovery.notes.push_back(
+    discovery.notes.emplace_back(
         "behind the noise of the plant as given the machine diverges with what was "
         "found: forces that are left cannot be drawn");
   }
