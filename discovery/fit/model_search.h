@@ -162,9 +162,9 @@ class ModelSearch {
   FilterPath Filtered(PhysicsSteps steps) const;
   /// @param path  with those steps
   void TakeSteps(PhysicsSteps steps, FilterPath path);
-  /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
   /// Whether what some hundred filters take is a small part of the time that is left.
   bool HasTimeForFits() const;
+  /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
   void ChooseFriction();
 
   const Machine& given_;

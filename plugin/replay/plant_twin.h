@@ -1,18 +1,13 @@
 #pragma once
 // The twin of a nonlinear machine: its plant in MuJoCo, run beside the measurement.
-// Sensitivities follow the first order of every physics step of h (tangent.h),
-//
-//   dv' = dv + G (df - K dq - D dv - B_s dv),    dq' = dq + h dv'
-//   G = h (M + h D)^-1 M W^-1,    W = M + sum over the joints that stick of r e e^T
-//
-// with M, D, K of the machine at rest, which it leaves by little, and the joints that
-// stick those of the very step; tendons that stick add r J^T J, J their moments at rest. df
-// is the force of a unit of each unknown where the run is: a damper's with the velocity at
-// the end of a step, as Euler's method has it; a mass's with the acceleration of the step;
-// dry friction's +-1 where the joint or the tendon slides, 0 where it sticks; that of
-// numbers that have no law of their own here, as of tendons and of drives that feed back,
-// what they add to M, D, K and Gamma at rest. At the end of a tick the gain takes its part,
-// S -= L C S.
+// Sensitivities follow the first order of every physics step (tangent.h), its map that of what
+// sticks in the very step (sticking_maps.h), with M, D, K and moments of tendons of the machine
+// at rest, which it leaves by little. The force df is that of a unit of each unknown where the
+// run is: a damper's with the velocity at the end of a step, as Euler's method has it; a mass's
+// with the acceleration of the step; dry friction's +-1 where the joint or the tendon slides, 0
+// where it sticks; that of numbers that have no law of their own here, as of tendons and of
+// drives that feed back, what they add to M, D, K and Gamma at rest. At the end of a tick the
+// gain takes its part, S -= L C S.
 
 #include <mujoco/mujoco.h>
 
