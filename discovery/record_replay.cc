@@ -12,8 +12,9 @@
 namespace mjdiag {
 
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
-                                    const Changes& changes, std::uint64_t seed,
-                                    bool falls, const FilterNoise& near) {
+                                    const Changes& changes, PhysicsSteps steps,
+                                    std::uint64_t seed, bool falls,
+                                    const FilterNoise& near) {
   RunOptions options;
   options.seed = seed;
   std::vector<const MeasuredRecord*> records;
@@ -26,21 +27,21 @@ std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
   };
   add(measurements.fit, true);
   add(measurements.unseen, false);
-  ParallelFor(2 * static_cast<int>(records.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number / 2);
+  ParallelFor(static_cast<int>(records.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
     const auto& [record, machine, name, notes, own_plant] = *records[i];
-    const bool is_before = number % 2 == 0;
     if (falls) {
       // One filter is behind both.
-      if (!is_before) return;
-      const FollowedPair pair = CompareFollowed(machine, changes, record, &near);
+      const FollowedPair pair = CompareFollowed(
+          steps.Of(machine), steps.Of(machine.With(changes)), record, &near);
       replays[i].before = pair.before;
       replays[i].after = pair.after;
-    } else if (is_before) {
-      replays[i].before = CompareFree(machine, record, options);
-    } else {
-      replays[i].after = CompareFree(machine.With(changes), record, options);
+      return;
     }
+    // What noise does is what it does to the better model.
+    replays[i].after = CompareFree(steps.Of(machine.With(changes)), record, options);
+    replays[i].before =
+        CompareFree(steps.Of(machine), record, options, &replays[i].after);
   });
   return replays;
 }
@@ -54,10 +55,11 @@ bool AnyDivergesOpenLoop(const Measurements& measurements) {
 }
 
 std::map<std::string, double> MeanReplayErrors(
-    const std::vector<MeasuredRecord>& records, const Changes& changes) {
+    const std::vector<MeasuredRecord>& records, const Changes& changes,
+    PhysicsSteps steps) {
   std::map<std::string, double> mean;
   for (const auto& [record, machine, name, notes, own_plant] : records) {
-    for (const auto& [signal, error] : ReplayErrors(machine, changes, record)) {
+    for (const auto& [signal, error] : ReplayErrors(steps.Of(machine.With(changes)), record)) {
       mean[signal] += error / static_cast<double>(records.size());
     }
   }

@@ -10,6 +10,7 @@
 #include "mjdiag/discovery/comparison/comparison.h"
 #include "mjdiag/discovery/measurements.h"
 #include "mjdiag/plugin/effects/changes.h"
+#include "mjdiag/plugin/machine/physics_steps.h"
 
 namespace mjdiag {
 
@@ -22,17 +23,21 @@ struct RecordReplay {
 
 /// Of all records, those that fits saw first. A machine that falls is followed by a filter
 /// instead (CompareFollowed).
-/// @param seed  of the noise floors
-/// @param near  to it the noise of the filter is
+/// @param steps  that the records know, before and after: what others would add is no
+///               mismatch of the plant
+/// @param seed   of the noise floors
+/// @param near   to it the noise of the filter is
 std::vector<RecordReplay> ReplayAll(const Measurements& measurements,
-                                    const Changes& changes, std::uint64_t seed,
-                                    bool falls, const FilterNoise& near);
+                                    const Changes& changes, PhysicsSteps steps,
+                                    std::uint64_t seed, bool falls,
+                                    const FilterNoise& near);
 
 /// Whether the machine falls on any of the records.
 bool AnyDivergesOpenLoop(const Measurements& measurements);
 
 /// Channel or derived signal -> relative error (ReplayErrors), mean over records [%].
 std::map<std::string, double> MeanReplayErrors(
-    const std::vector<MeasuredRecord>& records, const Changes& changes);
+    const std::vector<MeasuredRecord>& records, const Changes& changes,
+    PhysicsSteps steps);
 
 }  // namespace mjdiag

@@ -252,7 +252,8 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     time.Say("figures", 0.9);
     const Changes changes = ChangesOfAnswer(discovery);
     const bool follows = AddReplays(
-        measurements, changes, machine.setup().compare.skip_samples, options.seed,
+        measurements, changes, data.steps, machine.setup().compare.skip_samples,
+        options.seed,
         NoiseInTicksOf(explained.nothing, machine.rates().tick()), discovery);
     if (follows) AddPredictions(data, judged, discovery);
     if (!time.IsOver()) AddLadderOf(data, judged, measurements, follows, discovery);

@@ -42,6 +42,22 @@ void TakeUnseen(const AnswerData& data, const std::function<FilterPath()>& follo
   }
 }
 
+/// Values anew behind the gains of a path along what fits saw.
+void Refit(const AnswerData& data, const Model& model, const FilterPath& path,
+           const std::function<bool()>& is_over, ModelOnRuns& one) {
+  constexpr int kIterations = 4;
+  one.fit =
+      FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
+               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
+  one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
+                            path.starts, path.noise);
+}
+
+std::vector<FilterStart> UnseenStarts(const AnswerData& data, const ModelOnRuns& one) {
+  if (data.run.GoesOn()) return one.seen.starts;
+  return FilterStarts(data.With(one.fit.model), data.run.unseen, data.reading_sd);
+}
+
 /// The same behind the likeliest noise, from one and from one that follows anything.
 void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
                       const IsTimeOver& is_over, ModelOnRuns& one) {
@@ -60,8 +76,7 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given,
                   const std::function<bool()>& is_over, ModelOnRuns& one) {
   const Machine machine = data.With(one.fit.model);
   const MeasuredRun& run = data.run.unseen;
-  const std::vector<FilterStart> starts =
-      data.run.GoesOn() ? one.seen.starts : FilterStarts(machine, run, data.reading_sd);
+  const std::vector<FilterStart> starts = UnseenStarts(data, one);
   one.unseen_deviance = std::numeric_limits<double>::infinity();
   for (const double part : {0.0, 1e-2}) {
     const FilterNoise noise = AtLeast(one.seen.noise, part, given);
@@ -80,19 +95,47 @@ void FollowUnseen(const AnswerData& data, const FilterNoise& given,
   }
 }
 
-ModelOnRuns Refitted(const AnswerData& data, const Model& model,
-                     const std::vector<Eigen::Index>& dofs,
-                     const std::vector<FilterNoise>& near, const FilterNoise& given,
-                     const std::function<bool()>& is_over) {
-  constexpr int kIterations = 4;
+ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,
+                             const std::vector<const ModelOnRuns*>& others,
+                             const std::function<bool()>& is_over) {
+  std::vector<FilterNoise> near;
+  std::vector<FilterNoise> near_unseen;
+  for (const ModelOnRuns* other : others) {
+    near.push_back(other->seen.noise);
+    near_unseen.push_back(other->unseen.noise);
+  }
   ModelOnRuns one;
-  const FilterPath path = FilterLikeliestFrom(data.With(model), data.run.seen,
-                                              data.reading_sd, dofs, near, is_over);
-  one.fit =
-      FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
-               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
-  one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
-                            path.starts, path.noise);
+  Refit(data, model,
+        FilterByPiecesFrom(data.With(model), data.run.seen, data.reading_sd,
+                           others.front()->seen.dofs, near, is_over),
+        is_over, one);
+  near_unseen.push_back(one.seen.noise);
+  const std::vector<FilterStart> starts = UnseenStarts(data, one);
+  one.unseen_deviance = std::numeric_limits<double>::infinity();
+  for (const FilterNoise& noise : near_unseen) {
+    if (std::isfinite(one.unseen_deviance) && is_over()) break;
+    TakeUnseen(
+        data,
+        [&] {
+          return RunForceFilter(data.With(one.fit.model), data.run.unseen,
+                                one.seen.dofs, starts, noise);
+        },
+        one);
+  }
+  if (!std::isfinite(one.unseen_deviance)) {
+    throw NumericalError("replay: diverges on unseen data");
+  }
+  return one;
+}
+
+ModelOnRuns Refined(const AnswerData& data, ModelOnRuns by_pieces,
+                    const FilterNoise& given, const std::function<bool()>& is_over) {
+  ModelOnRuns one = std::move(by_pieces);
+  const Model model = one.fit.model;
+  const FilterPath path =
+      FilterLikelier(data.With(model), data.run.seen, data.reading_sd,
+                     std::move(one.seen), is_over);
+  Refit(data, model, path, is_over, one);
   FollowUnseen(data, given, is_over, one);
   return one;
 }

@@ -36,11 +36,17 @@ struct ModelOnRuns {
 void FollowUnseen(const AnswerData& data, const FilterNoise& given,
                   const std::function<bool()>& is_over, ModelOnRuns& one);
 
-/// Values and noise of a model anew.
-ModelOnRuns Refitted(const AnswerData& data, const Model& model,
-                     const std::vector<Eigen::Index>& dofs,
-                     const std::vector<FilterNoise>& near, const FilterNoise& given,
-                     const std::function<bool()>& is_over);
+/// Values and noise of a model anew, from others' paths: the noise by pieces of what fits saw,
+/// and of what they did not the likeliest of some. What it costs beside others is an upper bound,
+/// which `Refined` is not by.
+/// @param others  the likelier ones first
+ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,
+                             const std::vector<const ModelOnRuns*>& others,
+                             const std::function<bool()>& is_over);
+
+/// The same behind the noise that all of it asks for.
+ModelOnRuns Refined(const AnswerData& data, ModelOnRuns by_pieces,
+                    const FilterNoise& given, const std::function<bool()>& is_over);
 
 ModelOnRuns NothingOf(const AnswerData& data, const Explained& explained,
                       const std::function<bool()>& is_over);

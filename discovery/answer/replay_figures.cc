@@ -24,10 +24,10 @@ namespace {
 
 constexpr double kDiverged = std::numeric_limits<double>::infinity();
 
-void AddMismatch(const Measurements& measurements, const Changes& changes, Index skip,
-                 std::uint64_t seed, bool follows, const FilterNoise& near,
-                 Discovery& discovery) {
-  discovery.records = ReplayAll(measurements, changes, seed, follows, near);
+void AddMismatch(const Measurements& measurements, const Changes& changes,
+                 PhysicsSteps steps, Index skip, std::uint64_t seed, bool follows,
+                 const FilterNoise& near, Discovery& discovery) {
+  discovery.records = ReplayAll(measurements, changes, steps, seed, follows, near);
   AddMismatchFigures(skip, discovery);
 }
 
@@ -90,10 +90,11 @@ double ColourOf(const VectorXd& scaled, const KeptGains& gains, Index sensors) {
 
 }  // namespace
 
-bool AddReplays(const Measurements& measurements, const Changes& changes, Index skip,
-                std::uint64_t seed, const FilterNoise& near, Discovery& discovery) {
+bool AddReplays(const Measurements& measurements, const Changes& changes,
+                PhysicsSteps steps, Index skip, std::uint64_t seed,
+                const FilterNoise& near, Discovery& discovery) {
   const auto add = [&](bool follows) {
-    AddMismatch(measurements, changes, skip, seed, follows, near, discovery);
+    AddMismatch(measurements, changes, steps, skip, seed, follows, near, discovery);
   };
   const auto is_better = [&] {
     return discovery.gain_validation > 0.0 && discovery.gain_train > 0.0;
@@ -151,7 +152,8 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
     const bool is_fit = number % kParts == 2;
     try {
       (is_fit ? step.error_percent : step.validation_percent) =
-          MeanReplayErrors(is_fit ? measurements.fit : measurements.unseen, changes);
+          MeanReplayErrors(is_fit ? measurements.fit : measurements.unseen, changes,
+                           data.steps);
     } catch (const NumericalError&) {
       // It diverges so far, and has no error.
     }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -23,6 +24,14 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kNeeded = std::numeric_limits<double>::infinity();
+
+/// Whether a loss is beyond doubt that is known to what the noise of pieces does beside that of
+/// all: p / f of -2 ln L, by p of its numbers from a share f, some hundred; and to what lies
+/// between the noise of the answer and of the machine as given, less than half of the loss.
+bool IsBeyondDoubt(const MemberLoss& loss) {
+  constexpr double kSome = 500.0;
+  return loss.seen > kSome && loss.unseen > kSome;
+}
 
 /// That unseen data speak against it by more than fits are off, or that it is not worth its
 /// price.
@@ -59,7 +68,8 @@ class UnseenJudge {
   void TakeExplained(ModelOnRuns answer);
   /// To where the search was when its model still held on what no fit saw.
   void GoBack();
-  /// Values and noises of some models anew; none of one that the machine cannot be.
+  /// Values and noises of some models anew; none of one that the machine cannot be. Those that
+  /// are beyond doubt worse than the answer by the noise of pieces only.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(
       const std::vector<Model>& models) const;
   /// Takes every member out; true if the worst one leaves the model, or another one comes in
@@ -73,9 +83,6 @@ class UnseenJudge {
   std::vector<Instead> InsteadOf(std::size_t place) const;
   /// True if a member is exchanged.
   bool ExchangeOne();
-  std::vector<FilterNoise> Near() const {
-    return {judged_.answer.seen.noise, judged_.nothing.seen.noise};
-  }
   MemberLoss LossOf(const ModelOnRuns& other) const {
     return {other.Score() - judged_.answer.Score(),
             other.unseen_deviance - judged_.answer.unseen_deviance};
@@ -85,6 +92,8 @@ class UnseenJudge {
   Explained& explained_;
   const std::function<bool()>& is_over_;
   UnseenJudgement judged_;
+  /// Blocks of members whose loss is beyond doubt: the fewer others are left, the more.
+  std::map<std::size_t, MemberLoss> needed_;
 };
 
 void UnseenJudge::LeaveNothing() {
@@ -104,8 +113,11 @@ std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
     if (is_over_()) return;
     const auto m = static_cast<std::size_t>(number);
     try {
-      fitted[m] = Refitted(data_, models[m], judged_.answer.seen.dofs, Near(),
-                           judged_.nothing.seen.noise, is_over_);
+      fitted[m] = RefittedByPieces(data_, models[m],
+                                   {&judged_.answer, &judged_.nothing}, is_over_);
+      if (IsBeyondDoubt(LossOf(*fitted[m])) || is_over_()) return;
+      fitted[m] = Refined(data_, *std::move(fitted[m]), judged_.nothing.seen.noise,
+                          is_over_);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
@@ -144,16 +156,30 @@ bool UnseenJudge::DropWorst() {
   const Model& model = answer.fit.model;
   judged_.losses.assign(model.size(), {kNeeded, kNeeded});
   judged_.exchanges.assign(model.size(), {});
+  const std::vector<bool> idle = NobodyWouldMiss(data_, answer);
   std::vector<Model> others;
-  for (std::size_t m = 0; m < model.size(); ++m) others.push_back(Without(model, m));
-  std::vector<std::optional<ModelOnRuns>> without = RefittedAll(others);
+  std::vector<std::size_t> asked;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    if (needed_.contains(model[m].block) && !idle[m]) continue;
+    others.push_back(Without(model, m));
+    asked.push_back(m);
+  }
+  std::vector<std::optional<ModelOnRuns>> refitted = RefittedAll(others);
+  std::vector<std::optional<ModelOnRuns>> without(model.size());
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    without[asked[i]] = std::move(refitted[i]);
+  }
   std::optional<ModelOnRuns> best;
   std::size_t worst = 0;
-  const std::vector<bool> idle = NobodyWouldMiss(data_, answer);
   for (std::size_t m = 0; m < model.size(); ++m) {
+    const auto needed = needed_.find(model[m].block);
+    if (needed != needed_.end()) judged_.losses[m] = needed->second;
     // The machine does not run without it, or no time is left.
     if (!without[m]) continue;
     judged_.losses[m] = LossOf(*without[m]);
+    if (IsBeyondDoubt(judged_.losses[m])) {
+      needed_[model[m].block] = judged_.losses[m];
+    }
     if (IsRefuted(judged_.losses[m])) {
       if (is_over_()) {
         // What was not looked at in the same way speaks against nothing.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "mjdiag/discovery/comparison/noise_floor.h"
@@ -152,13 +153,24 @@ void PredictATick(const Machine& machine, const Record& measured,
   }
 }
 
+std::map<std::string, NoiseFloor> FloorsOf(const Comparison& like) {
+  std::map<std::string, NoiseFloor> floors;
+  for (const ChannelMismatch& channel : like.channels) {
+    floors[channel.name] = channel.noise_floor;
+  }
+  return floors;
+}
+
 /// Measured beside a free simulation.
+/// @param like  has the noise floors; null: from draws of the noise
 void CompareChannels(const Machine& noisy, const Record& measured,
                      const Record& simulated, const Excitation& excitation,
                      const std::vector<std::string>& names, const RunOptions& options,
-                     Comparison& result) {
-  const auto floors = EstimateNoiseFloor(noisy, excitation, simulated, options,
-                                         result.options.skip_samples);
+                     const Comparison* like, Comparison& result) {
+  const auto floors = like != nullptr
+                          ? FloorsOf(*like)
+                          : EstimateNoiseFloor(noisy, excitation, simulated, options,
+                                               result.options.skip_samples);
   const double start = measured.start_time();
   result.measured = Select(measured, names, start);
   result.simulated = Select(simulated, names, start);
@@ -237,7 +249,8 @@ double Missed(const Record& measured, const Record& simulated, const Machine& no
 std::optional<NumericalError> SimulateFreely(
     const Machine& machine, const Record& measured, const RunOptions& options,
     const std::vector<std::string>& names, bool may_leave,
-    const std::optional<PlantState>& smoothed, Comparison& result) {
+    const std::optional<PlantState>& smoothed, const Comparison* like,
+    Comparison& result) {
   const Machine noisy =
       machine.WithSensorNoise(MeasuredNoise(machine.channels(), measured));
   RunOptions without_noise = options;
@@ -266,7 +279,8 @@ std::optional<NumericalError> SimulateFreely(
     result.falls = true;
     return std::nullopt;
   }
-  CompareChannels(noisy, measured, simulated, *excitation, names, options, result);
+  CompareChannels(noisy, measured, simulated, *excitation, names, options, like,
+                  result);
   return std::nullopt;
 }
 
@@ -277,8 +291,8 @@ Comparison Compare(const Machine& machine, const Record& measured,
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
   if (!CanBeFollowed(machine.setup(), measured)) {
-    const auto error =
-        SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
+    const auto error = SimulateFreely(machine, measured, options, names, true,
+                                      std::nullopt, nullptr, result);
     if (error) throw *error;
     return result;
   }
@@ -289,7 +303,7 @@ Comparison Compare(const Machine& machine, const Record& measured,
   if (!result.closed_loop && smoothed.start.allFinite()) {
     start = Moved(machine.plant(), path.starts.front().state, smoothed.start.col(0));
   }
-  SimulateFreely(machine, measured, options, names, false, start, result);
+  SimulateFreely(machine, measured, options, names, false, start, nullptr, result);
   result.deviance = path.deviance;
   result.prediction = Predict(machine, run, path, result.options.skip_samples);
   result.missing_force = DisturbanceEstimates(machine, path, smoothed);
@@ -298,11 +312,11 @@ Comparison Compare(const Machine& machine, const Record& measured,
 }
 
 Comparison CompareFree(const Machine& machine, const Record& measured,
-                       const RunOptions& options) {
+                       const RunOptions& options, const Comparison* like) {
   std::vector<std::string> names;
   Comparison result = Begin(machine, measured, names);
-  const auto error =
-      SimulateFreely(machine, measured, options, names, true, std::nullopt, result);
+  const auto error = SimulateFreely(machine, measured, options, names, true,
+                                    std::nullopt, like, result);
   if (error) throw *error;
   return result;
 }
@@ -340,7 +354,7 @@ FilterPath LikeliestPath(const Machine& machine, const MeasuredRun& run,
 
 }  // namespace
 
-FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
+FollowedPair CompareFollowed(const Machine& machine, const Machine& changed,
                              const Record& measured, const FilterNoise* near) {
   std::vector<std::string> names;
   const Comparison frame = Begin(machine, measured, names);
@@ -348,7 +362,6 @@ FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
   const FilterPath path = LikeliestPath(machine, run, NoiseOf(machine, measured), near);
   FollowedPair pair{frame, frame};
   PredictATick(machine, measured, path, pair.before);
-  const Machine changed = machine.With(changes);
   PredictATick(changed, measured,
                RunForceFilter(changed, run, path.dofs, path.starts, path.noise),
                pair.after);

@@ -63,8 +63,9 @@ Comparison Compare(const Machine& machine, const Record& measured,
                    const RunOptions& options);
 
 /// The free simulation alone. NumericalError if it diverges.
+/// @param like  has the noise floors, of all but the same machine; null: from draws of the noise
 Comparison CompareFree(const Machine& machine, const Record& measured,
-                       const RunOptions& options);
+                       const RunOptions& options, const Comparison* like = nullptr);
 
 /// Whether a machine falls that is driven with the inputs of the record alone, where that has
 /// all that the filter needs. InputError as above.
@@ -78,7 +79,7 @@ struct FollowedPair {
   Comparison after;
 };
 /// @param near  a noise near to which it is; null: from nothing
-FollowedPair CompareFollowed(const Machine& machine, const Changes& changes,
+FollowedPair CompareFollowed(const Machine& machine, const Machine& changed,
                              const Record& measured, const FilterNoise* near = nullptr);
 
 }  // namespace mjdiag

@@ -23,14 +23,12 @@ std::vector<std::string> MeasuredPositions(const Setup& setup, const Record& mea
 }  // namespace
 
 std::map<std::string, double> ReplayErrors(const Machine& machine,
-                                           const Changes& changes,
                                            const Record& measured) {
   RunOptions options;
   options.noise_scale = 0.0;
   Record simulated;
   try {
-    simulated =
-        Simulate(machine.With(changes), Replay(machine.setup(), measured), options);
+    simulated = Simulate(machine, Replay(machine.setup(), measured), options);
   } catch (const NumericalError&) {
     return {{machine.channels().sensors.front().channel,
              std::numeric_limits<double>::infinity()}};

@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 
-#include "mjdiag/plugin/effects/changes.h"
 #include "mjdiag/plugin/machine/machine.h"
 #include "mjdiag/signals/record.h"
 
@@ -17,7 +16,6 @@ namespace mjdiag {
 /// setup.compare.skip_samples. Of a replay that diverges: infinity for the first
 /// sensor.
 std::map<std::string, double> ReplayErrors(const Machine& machine,
-                                           const Changes& changes,
                                            const Record& measured);
 
 }  // namespace mjdiag

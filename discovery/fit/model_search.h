@@ -91,6 +91,9 @@ class ModelSearch {
   };
   StepsBehind LikelySteps(const Standing& standing, std::size_t noise) const;
   bool TakeStepsBehind(const Standing& standing, std::size_t noise);
+  /// Whether a part of the run promises next to nothing: what is that small is told apart by
+  /// all of it.
+  bool IsForAll(const Moves& moves) const;
   std::optional<Proposal> BestForces(Standing& standing);
   std::optional<Proposal> BestMove(Standing& standing);
   /// How much of its inputs did the machine not feel?

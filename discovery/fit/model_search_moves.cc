@@ -17,6 +17,7 @@
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
 #include "mjdiag/discovery/regression/whitenings.h"
+#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -51,6 +52,12 @@ std::optional<ConvergedModel> ModelSearch::ConvergedAnew(
   return settled;
 }
 
+bool ModelSearch::IsForAll(const Moves& moves) const {
+  constexpr double kLarge = 100.0;
+  return IsFirstLook() &&
+         (moves.best.empty() || moves.score - moves.best.front().score < kLarge);
+}
+
 std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing) {
   const Moves moves = ForceMovesOf(
       With(found_.fit.model), run_, found_.path, found_.blocks, standing.exact.terms,
@@ -58,6 +65,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestForces(Standing& standing)
        .inputs_are_noise = found_.input_width == 0.0 && inputs_are_noise_});
   Say(std::to_string(moves.variations) + " shapes of forces, " +
       std::to_string(moves.best.size()) + " moves");
+  if (IsForAll(moves)) return std::nullopt;
   // Behind the latent forces of a machine that lacks so much a fit hardly sees what is slow:
   // values are those of the regression until the filter has been run with them.
   constexpr std::size_t kMost = 3;
@@ -70,6 +78,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
   const Moves& moves = MovesNow(standing);
   if (TakeStepsBehind(standing, moves.noise)) return Incumbent();
   KeepRivals(moves);
+  if (IsForAll(moves)) return std::nullopt;
   const Whitenings& whitenings = standing.whitenings;
   const ModelFit& own =
       IncumbentBehind({moves.noise, false}, whitenings, standing.as_fitted);
@@ -102,75 +111,95 @@ const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
 std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     const Moves& moves, std::size_t most, int iterations, const Whitenings& whitenings,
     AsFitted& as_it_is, bool beside_itself) {
-  const auto fitted = [&](const Model& model, const Judged& judged) {
-    return Fitted(model, whitenings, judged, iterations);
+  struct Attempt {
+    Model model;
+    const ModelMove* move = nullptr;
+    std::optional<ModelFit> fit;
+    Judged JudgedBehind(std::size_t noises) const {
+      return {std::min(move->noise, noises - 1), move->other_steps};
+    }
   };
+  const std::size_t noises = whitenings.behind.size();
+  std::vector<Attempt> attempts;
+  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
+  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
+    const Model model = After(*move, found_.fit.model);
+    attempts.push_back({model, move, {}});
+    // Behind what sticks a filter may be lost, or without it: both are tried of what comes in.
+    const bool rubs = std::ranges::any_of(move->added, [&](const Added& added) {
+      return found_.blocks[added.variation.block].IsDryFriction();
+    });
+    const auto add_other = [&](const Model& other) {
+      if (!HaveSameBlocks(other, model)) attempts.push_back({other, move, {}});
+    };
+    if (rubs || iterations == 0) add_other(Creeping(found_.blocks, model));
+    if (iterations > 0) continue;
+    add_other(Abrupt(found_.blocks, model));
+    // A noise that is less likely than another one is no reason for a law.
+    if (beside_itself) attempts.push_back({found_.fit.model, move, {}});
+  }
+  if (iterations > 0) {
+    std::erase_if(attempts, [&](const Attempt& one) {
+      return std::ranges::any_of(worthless_, [&](const Model& other) {
+        return AreNear(other, one.model, kAsNear);
+      });
+    });
+  }
+  ParallelForAll(static_cast<int>(attempts.size()), [&](int number) {
+    Attempt& one = attempts[static_cast<std::size_t>(number)];
+    if (IsOver()) return;
+    const auto fitted = [&](const Model& model) {
+      return Fitted(model, whitenings, one.JudgedBehind(noises), iterations);
+    };
+    try {
+      ModelFit fit = fitted(one.model);
+      if (iterations > 0) fit = Pruned(found_.blocks, std::move(fit), fitted);
+      one.fit = std::move(fit);
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  });
   struct Tried {
     ModelFit fit;
     Judged judged;
     double gain = 0.0;
   };
   std::vector<Tried> tried;
-  const auto try_one = [&](const Model& model, const ModelMove& move) {
-    if (iterations > 0 && std::ranges::any_of(worthless_, [&](const Model& other) {
-          return AreNear(other, model, kAsNear);
-        })) {
-      return;
-    }
-    try {
-      const Judged judged{std::min(move.noise, whitenings.behind.size() - 1),
-                          move.other_steps};
-      ModelFit fit = fitted(model, judged);
-      double gain = moves.score - move.score;
-      if (iterations > 0) {
-        fit = Pruned(found_.blocks, std::move(fit),
-                     [&](const Model& other) { return fitted(other, judged); });
+  for (Attempt& one : attempts) {
+    if (!one.fit) continue;
+    ModelFit fit = *std::move(one.fit);
+    const Judged judged = one.JudgedBehind(noises);
+    double gain = moves.score - one.move->score;
+    if (iterations > 0) {
+      try {
         gain = IncumbentBehind(judged, whitenings, as_it_is).score() - fit.score();
+      } catch (const NumericalError&) {
+        continue;
       }
-      const auto is_this = [&](const Model& other) {
-        return HaveSameBlocks(other, fit.model);
-      };
-      if (std::ranges::any_of(hopeless_, is_this) ||
-          std::ranges::any_of(tried, is_this, [](const Tried& one) -> const Model& {
-            return one.fit.model;
-          })) {
-        return;
-      }
-      if (!IsResolved(found_.blocks, fit.model)) {
-        Decide(fit.model, -gain, "two of its members cannot be told apart");
-        return;
-      }
-      char text[80];
-      std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", move.score - moves.score,
-                    -gain);
-      Say(text + ModelText(found_.blocks, fit.model));
-      Rate(model, -gain);
-      if (gain < kLeastGain) {
-        Decide(fit.model, -gain, "fitted, it is worth less than it costs");
-        if (iterations > 0) worthless_.push_back(model);
-      }
-      tried.push_back({std::move(fit), judged, gain});
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
     }
-  };
-  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
-  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
-    if (IsOver()) break;
-    const Model model = After(*move, found_.fit.model);
-    try_one(model, *move);
-    // Behind what sticks a filter may be lost, or without it: both are tried of what comes in.
-    const bool rubs = std::ranges::any_of(move->added, [&](const Added& added) {
-      return found_.blocks[added.variation.block].IsDryFriction();
-    });
-    const auto try_other = [&](const Model& other) {
-      if (!HaveSameBlocks(other, model)) try_one(other, *move);
+    const auto is_this = [&](const Model& other) {
+      return HaveSameBlocks(other, fit.model);
     };
-    if (rubs || iterations == 0) try_other(Creeping(found_.blocks, model));
-    if (iterations > 0) continue;
-    try_other(Abrupt(found_.blocks, model));
-    // A noise that is less likely than another one is no reason for a law.
-    if (beside_itself) try_one(found_.fit.model, *move);
+    if (std::ranges::any_of(hopeless_, is_this) ||
+        std::ranges::any_of(tried, is_this, [](const Tried& other) -> const Model& {
+          return other.fit.model;
+        })) {
+      continue;
+    }
+    if (!IsResolved(found_.blocks, fit.model)) {
+      Decide(fit.model, -gain, "two of its members cannot be told apart");
+      continue;
+    }
+    char text[80];
+    std::snprintf(text, sizeof text, "  %.1f -> %.1f  ", one.move->score - moves.score,
+                  -gain);
+    Say(text + ModelText(found_.blocks, fit.model));
+    Rate(one.model, -gain);
+    if (gain < kLeastGain) {
+      Decide(fit.model, -gain, "fitted, it is worth less than it costs");
+      if (iterations > 0) worthless_.push_back(one.model);
+    }
+    tried.push_back({std::move(fit), judged, gain});
   }
   std::ranges::sort(tried, std::greater<>(), &Tried::gain);
   // Kept gains are those of what the machine was without a move: which is the best is said
@@ -193,8 +222,12 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Decide(tried.back().fit.model, -tried.back().gain, "three others are worth more");
     tried.pop_back();
   }
-  // Filters of what sticks take seconds.
-  if (IsOver()) return std::nullopt;
+  if (IsOver()) {
+    // What has been found is not thrown away for want of a filter, unless one takes long.
+    constexpr double kShare = 0.05;  // of the time
+    if (seconds_of_run_ > kShare * seconds_) return std::nullopt;
+    if (tried.size() > 1) tried.resize(1);
+  }
   std::vector<std::optional<ConvergedModel>> settled(tried.size());
   for (const bool other_steps : {false, true}) {
     std::vector<ModelFit> fits;

@@ -160,7 +160,8 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   const bool is_little =
       found_.score - beat < kLittle * (found_.nothing.deviance - found_.score);
   if (!std::isfinite(path.deviance)) return false;
-  if (!is_little && found_.path.deviance - path.deviance < kLeastGain) return false;
+  const bool may_hide = is_little && !found_.fit.model.empty();
+  if (!may_hide && found_.path.deviance - path.deviance < kLeastGain) return false;
   ConvergedModel settled = SettleNear(Beside(finer), found_.fit, std::move(path));
   if (settled.score() > beat) return false;
   Say("finer steps: " + Difference(settled.score()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace mjdiag {
@@ -142,6 +143,23 @@ const ModelMove* SimplestOf(const Moves& moves,
 
 }  // namespace
 
+namespace {
+
+/// Whether it takes out the same and brings in all that another one does.
+bool DoesAllOf(const ModelMove& move, const ModelMove& other) {
+  if (move.removed != other.removed) return false;
+  std::multiset<std::size_t> brings;
+  for (const Added& added : move.added) brings.insert(added.variation.block);
+  return std::ranges::all_of(other.added, [&](const Added& added) {
+    const auto one = brings.find(added.variation.block);
+    if (one == brings.end()) return false;
+    brings.erase(one);
+    return true;
+  });
+}
+
+}  // namespace
+
 std::vector<const ModelMove*> ToBeFitted(
     const Moves& moves, std::size_t most,
     const std::function<bool(const ModelMove&)>& may_be) {
@@ -152,6 +170,12 @@ std::vector<const ModelMove*> ToBeFitted(
   std::map<std::size_t, int> with_block;
   for (const ModelMove& move : moves.best) {
     if (move.score > moves.score - kLeastGain || !may_be(move)) continue;
+    // What is worth less with more comes in later, if at all.
+    if (std::ranges::any_of(chosen, [&](const ModelMove* better) {
+          return DoesAllOf(move, *better);
+        })) {
+      continue;
+    }
     if (std::ranges::any_of(move.added, [&](const Added& added) {
           return with_block[added.variation.block] >= kOfBlock;
         })) {

@@ -31,7 +31,8 @@ Model BreakingAway(const std::vector<Block>& blocks, Model model,
 
 /// The best of all that may be, of which no block comes in with more than two, and the best that
 /// brings one block and nothing else: the fewer come at once, the nearer is first order to what
-/// a fit finds; and, of those that gain half as much as the best, the one that leaves the fewest.
+/// a fit finds; and, of those that gain half as much as the best, the one that leaves the fewest. None that does
+/// all that a better one does, and more.
 /// @param most  1: the best alone
 std::vector<const ModelMove*> ToBeFitted(
     const Moves& moves, std::size_t most,

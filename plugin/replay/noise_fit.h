@@ -53,6 +53,14 @@ FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const std::vector<FilterNoise>& near,
                                const IsTimeOver& is_over = {});
 
+/// The same behind the noise that is likeliest by pieces of the run: of all of it another one may
+/// be likelier, by some hundred of -2 ln L.
+FilterPath FilterByPiecesFrom(const Machine& machine, const MeasuredRun& run,
+                              const Eigen::VectorXd& reading_sd,
+                              const std::vector<Eigen::Index>& dofs,
+                              const std::vector<FilterNoise>& near,
+                              const IsTimeOver& is_over = {});
+
 /// The path of a machine along a run with a noise that is likelier, from its own on.
 /// @param readings  so many say which
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,
