@@ -59,7 +59,8 @@ std::map<std::string, double> MeanReplayErrors(
     PhysicsSteps steps) {
   std::map<std::string, double> mean;
   for (const auto& [record, machine, name, notes, own_plant] : records) {
-    for (const auto& [signal, error] : ReplayErrors(steps.Of(machine.With(changes)), record)) {
+    for (const auto& [signal, error] :
+         ReplayErrors(steps.Of(machine.With(changes)), record)) {
       mean[signal] += error / static_cast<double>(records.size());
     }
   }

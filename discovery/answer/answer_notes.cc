@@ -139,8 +139,10 @@ std::string NoteOfInputDelay(double delay, double step) {
   return "all inputs act " + FormatQuantity(delay, "s") +
          " later than in the simulation; it has physics steps of " +
          FormatQuantity(step, "s") +
-         ", which are off by up to half of that; all figures of this answer, before and "
-         "after, are of the machine without what its steps add (mjdiag compare is with it)";
+         ", which are off by up to half of that; all figures of this answer, before "
+         "and "
+         "after, are of the machine without what its steps add (mjdiag compare is with "
+         "it)";
 }
 
 std::string NoteOfExperiment(const Machine& machine, const Cause& one,

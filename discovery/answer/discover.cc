@@ -253,8 +253,8 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
     const Changes changes = ChangesOfAnswer(discovery);
     const bool follows = AddReplays(
         measurements, changes, data.steps, machine.setup().compare.skip_samples,
-        options.seed,
-        NoiseInTicksOf(explained.nothing, machine.rates().tick()), discovery);
+        options.seed, NoiseInTicksOf(explained.nothing, machine.rates().tick()),
+        discovery);
     if (follows) AddPredictions(data, judged, discovery);
     if (!time.IsOver()) AddLadderOf(data, judged, measurements, follows, discovery);
     if (!time.IsOver()) AddMinimumDetectableFaults(data, judged, discovery);

@@ -132,9 +132,8 @@ ModelOnRuns Refined(const AnswerData& data, ModelOnRuns by_pieces,
                     const FilterNoise& given, const std::function<bool()>& is_over) {
   ModelOnRuns one = std::move(by_pieces);
   const Model model = one.fit.model;
-  const FilterPath path =
-      FilterLikelier(data.With(model), data.run.seen, data.reading_sd,
-                     std::move(one.seen), is_over);
+  const FilterPath path = FilterLikelier(data.With(model), data.run.seen,
+                                         data.reading_sd, std::move(one.seen), is_over);
   Refit(data, model, path, is_over, one);
   FollowUnseen(data, given, is_over, one);
   return one;

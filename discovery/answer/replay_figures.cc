@@ -151,9 +151,8 @@ void AddLadderOf(const AnswerData& data, const UnseenJudgement& judged,
     const Changes changes = ChangesOfModel(data.blocks, model);
     const bool is_fit = number % kParts == 2;
     try {
-      (is_fit ? step.error_percent : step.validation_percent) =
-          MeanReplayErrors(is_fit ? measurements.fit : measurements.unseen, changes,
-                           data.steps);
+      (is_fit ? step.error_percent : step.validation_percent) = MeanReplayErrors(
+          is_fit ? measurements.fit : measurements.unseen, changes, data.steps);
     } catch (const NumericalError&) {
       // It diverges so far, and has no error.
     }
