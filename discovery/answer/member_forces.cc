@@ -42,9 +42,12 @@ std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& ans
     others.push_back({data.With(Without(model, m))});
   }
   others.push_back({data.With({})});
+  others.push_back({data.machine.With(ChangesOfModel(data.blocks, model))});
   const std::vector<Column> columns = TickColumns(machine, data.run.seen, path, others);
   const MatrixXd& mass = machine.mechanics().M;
-  const VectorXd least = kHundredth * SizesOf(columns.back(), path, mass);
+  const VectorXd least =
+      kHundredth * SizesOf(columns[model.size()], path, mass)
+                       .cwiseMax(SizesOf(columns[model.size() + 1], path, mass));
   std::vector<bool> idle(model.size(), false);
   for (std::size_t m = 0; m < model.size(); ++m) {
     if (ActsOnReadings(data.blocks[model[m].block])) continue;

@@ -58,6 +58,26 @@ std::vector<FilterStart> UnseenStarts(const AnswerData& data, const ModelOnRuns&
   return FilterStarts(data.With(one.fit.model), data.run.unseen, data.reading_sd);
 }
 
+/// The same behind the likeliest of some noises.
+void FollowUnseenBehind(const std::vector<FilterNoise>& noises, const AnswerData& data,
+                        const IsTimeOver& is_over, ModelOnRuns& one) {
+  const std::vector<FilterStart> starts = UnseenStarts(data, one);
+  one.unseen_deviance = std::numeric_limits<double>::infinity();
+  for (const FilterNoise& noise : noises) {
+    if (std::isfinite(one.unseen_deviance) && is_over()) break;
+    TakeUnseen(
+        data,
+        [&] {
+          return RunForceFilter(data.With(one.fit.model), data.run.unseen,
+                                one.seen.dofs, starts, noise);
+        },
+        one);
+  }
+  if (!std::isfinite(one.unseen_deviance)) {
+    throw NumericalError("replay: diverges on unseen data");
+  }
+}
+
 /// The same behind the likeliest noise, from one and from one that follows anything.
 void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
                       const IsTimeOver& is_over, ModelOnRuns& one) {
@@ -110,21 +130,15 @@ ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,
                            others.front()->seen.dofs, near, is_over),
         is_over, one);
   near_unseen.push_back(one.seen.noise);
-  const std::vector<FilterStart> starts = UnseenStarts(data, one);
-  one.unseen_deviance = std::numeric_limits<double>::infinity();
-  for (const FilterNoise& noise : near_unseen) {
-    if (std::isfinite(one.unseen_deviance) && is_over()) break;
-    TakeUnseen(
-        data,
-        [&] {
-          return RunForceFilter(data.With(one.fit.model), data.run.unseen,
-                                one.seen.dofs, starts, noise);
-        },
-        one);
-  }
-  if (!std::isfinite(one.unseen_deviance)) {
-    throw NumericalError("replay: diverges on unseen data");
-  }
+  FollowUnseenBehind(near_unseen, data, is_over, one);
+  return one;
+}
+
+ModelOnRuns RefittedBehind(const ModelOnRuns& like, const AnswerData& data,
+                           const Model& model, const std::function<bool()>& is_over) {
+  ModelOnRuns one;
+  Refit(data, model, like.seen, is_over, one);
+  FollowUnseenBehind({like.unseen.noise}, data, is_over, one);
   return one;
 }
 

@@ -68,6 +68,8 @@ class UnseenJudge {
   void TakeExplained(ModelOnRuns answer);
   /// To where the search was when its model still held on what no fit saw.
   void GoBack();
+  /// Takes out, at once, members that nobody would miss.
+  void DropIdle();
   /// Values and noises of some models anew; none of one that the machine cannot be. Those that
   /// are beyond doubt worse than the answer by the noise of pieces only.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(
@@ -211,7 +213,8 @@ bool UnseenJudge::DropWorst() {
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
          IsRefuted(judged_.losses[worst])
              ? "left out: data that no fit saw are predicted as well without it"
-             : "left out: its force is less than a hundredth of what is missing");
+             : "left out: its force is less than a hundredth of what is missing, or of "
+               "what physics steps do");
   judged_.answer = std::move(*best);
   judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
   judged_.losses.clear();
@@ -339,6 +342,30 @@ void UnseenJudge::GoBack() {
   TakeExplained(std::move(*best));
 }
 
+void UnseenJudge::DropIdle() {
+  const Model& model = judged_.answer.fit.model;
+  const std::vector<bool> idle = NobodyWouldMiss(data_, judged_.answer);
+  Model others, left_out;
+  std::vector<std::size_t> places;
+  for (std::size_t m = 0; m < model.size(); ++m) {
+    (idle[m] ? left_out : others).push_back(model[m]);
+    if (!idle[m]) places.push_back(judged_.places[m]);
+  }
+  if (left_out.empty()) return;
+  try {
+    judged_.answer = others.empty()
+                         ? judged_.nothing
+                         : RefittedBehind(judged_.answer, data_, others, is_over_);
+  } catch (
+      const NumericalError&) {  // those that stay need what leaves, or no time is left
+    return;
+  }
+  judged_.places = std::move(places);
+  Decide("without " + Names(left_out), 0.0,
+         "left out: its force is less than a hundredth of what is missing, or of what "
+         "physics steps do");
+}
+
 UnseenJudgement UnseenJudge::Run() {
   judged_.nothing = NothingOf(data_, explained_, is_over_);
   TakeExplained({explained_.fit, explained_.path, {}, 0.0});
@@ -358,6 +385,7 @@ UnseenJudgement UnseenJudge::Run() {
   if (judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance < kLeastGain) {
     GoBack();
   }
+  if (!judged_.answer.fit.model.empty()) DropIdle();
   // Each exchange gains; what went round would be noise of fits.
   for (int exchanges = 0;; ++exchanges) {
     while (!judged_.answer.fit.model.empty() && DropWorst()) {

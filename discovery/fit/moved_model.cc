@@ -158,6 +158,16 @@ bool DoesAllOf(const ModelMove& move, const ModelMove& other) {
   });
 }
 
+/// Whether one with fewer members gains all but what is of second order of it.
+bool IsNextToSimpler(const ModelMove& move, const Moves& moves) {
+  constexpr double kShare = 0.05;
+  const double gain = moves.score - move.score;
+  return std::ranges::any_of(moves.best, [&](const ModelMove& other) {
+    return other.added.size() < move.added.size() && DoesAllOf(move, other) &&
+           moves.score - other.score > (1.0 - kShare) * gain;
+  });
+}
+
 }  // namespace
 
 std::vector<const ModelMove*> ToBeFitted(
@@ -171,9 +181,10 @@ std::vector<const ModelMove*> ToBeFitted(
   for (const ModelMove& move : moves.best) {
     if (move.score > moves.score - kLeastGain || !may_be(move)) continue;
     // What is worth less with more comes in later, if at all.
-    if (std::ranges::any_of(chosen, [&](const ModelMove* better) {
-          return DoesAllOf(move, *better);
-        })) {
+    if (std::ranges::any_of(
+            chosen,
+            [&](const ModelMove* better) { return DoesAllOf(move, *better); }) ||
+        IsNextToSimpler(move, moves)) {
       continue;
     }
     if (std::ranges::any_of(move.added, [&](const Added& added) {

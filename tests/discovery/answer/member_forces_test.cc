@@ -24,7 +24,7 @@ class MemberForces : public ::testing::Test {
   }
   std::vector<bool> Missed(const Model& model) const {
     const SplitRun split{run_, run_, {0}, 1.0};
-    const AnswerData data{stage_.machine, split, noise_, blocks_, true};
+    const AnswerData data{stage_.machine, split, noise_, blocks_, {1.0}};
     ModelOnRuns answer;
     answer.fit.model = model;
     answer.seen = FilterLikeliest(data.With(model), run_, noise_);
@@ -46,6 +46,15 @@ TEST_F(MemberForces, AreMissedFromAHundredthOfAllOn) {
   };
   EXPECT_EQ(Missed({friction, ripple(0.1)}), (std::vector<bool>{false, true}));
   EXPECT_EQ(Missed({friction, ripple(1.5)}), (std::vector<bool>{false, false}));
+}
+
+// Of steps all but what is of second order is taken away: by itself the ripple is all there is.
+TEST_F(MemberForces, AreMissedFromAHundredthOfWhatStepsDoOn) {
+  const auto ripple = [&](double amplitude) {
+    return Of("force_ripple@load", Eigen::Vector3d(amplitude, 0.02, 0.7));
+  };
+  EXPECT_EQ(Missed({ripple(1e-6)}), std::vector<bool>{true});
+  EXPECT_EQ(Missed({ripple(1.5)}), std::vector<bool>{false});
 }
 
 }  // namespace
