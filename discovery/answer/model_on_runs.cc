@@ -134,11 +134,10 @@ ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,
   return one;
 }
 
-ModelOnRuns RefittedBehind(const ModelOnRuns& like, const AnswerData& data,
-                           const Model& model, const std::function<bool()>& is_over) {
+ModelOnRuns RefittedAlong(const FilterPath& like, const AnswerData& data,
+                          const Model& model, const std::function<bool()>& is_over) {
   ModelOnRuns one;
-  Refit(data, model, like.seen, is_over, one);
-  FollowUnseenBehind({like.unseen.noise}, data, is_over, one);
+  Refit(data, model, like, is_over, one);
   return one;
 }
 

@@ -36,9 +36,10 @@ struct ModelOnRuns {
 void FollowUnseen(const AnswerData& data, const FilterNoise& given,
                   const std::function<bool()>& is_over, ModelOnRuns& one);
 
-/// Values of a model anew behind the noises of another one that is all but it.
-ModelOnRuns RefittedBehind(const ModelOnRuns& like, const AnswerData& data,
-                           const Model& model, const std::function<bool()>& is_over);
+/// Values of a model anew along the path of another one that is all but it, and behind its noise;
+/// without what fits did not see.
+ModelOnRuns RefittedAlong(const FilterPath& like, const AnswerData& data,
+                          const Model& model, const std::function<bool()>& is_over);
 
 /// Values and noise of a model anew, from others' paths: the noise by pieces of what fits saw,
 /// and of what they did not the likeliest of some. What it costs beside others is an upper bound,

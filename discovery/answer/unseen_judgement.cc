@@ -68,8 +68,11 @@ class UnseenJudge {
   void TakeExplained(ModelOnRuns answer);
   /// To where the search was when its model still held on what no fit saw.
   void GoBack();
-  /// Takes out, at once, members that nobody would miss.
+  /// Takes out, at once, members of the model of the search that nobody would miss.
   void DropIdle();
+  /// Follows unseen data beside the machine as given, and beside the answer.
+  /// @return whether the machine stays with them with the answer
+  bool FollowBoth();
   /// Values and noises of some models anew; none of one that the machine cannot be. Those that
   /// are beyond doubt worse than the answer by the noise of pieces only.
   std::vector<std::optional<ModelOnRuns>> RefittedAll(
@@ -353,12 +356,9 @@ void UnseenJudge::DropIdle() {
   }
   if (left_out.empty()) return;
   try {
-    judged_.answer = others.empty()
-                         ? judged_.nothing
-                         : RefittedBehind(judged_.answer, data_, others, is_over_);
-  } catch (
-      const NumericalError&) {  // those that stay need what leaves, or no time is left
-    return;
+    judged_.answer = RefittedAlong(judged_.answer.seen, data_, others, is_over_);
+  } catch (const NumericalError&) {
+    return;  // those that stay need what leaves, or no time is left
   }
   judged_.places = std::move(places);
   Decide("without " + Names(left_out), 0.0,
@@ -366,17 +366,31 @@ void UnseenJudge::DropIdle() {
          "physics steps do");
 }
 
+bool UnseenJudge::FollowBoth() {
+  bool stays = true;
+  ParallelForAll(2, [&](int number) {
+    if (number == 0) {
+      judged_.nothing = NothingOf(data_, explained_, is_over_);
+      return;
+    }
+    try {
+      FollowUnseen(data_, explained_.nothing.noise, is_over_, judged_.answer);
+    } catch (const NumericalError&) {
+      stays = false;
+    }
+  });
+  return stays;
+}
+
 UnseenJudgement UnseenJudge::Run() {
-  judged_.nothing = NothingOf(data_, explained_, is_over_);
   TakeExplained({explained_.fit, explained_.path, {}, 0.0});
-  if (explained_.fit.model.empty()) {
-    judged_.answer.unseen = judged_.nothing.unseen;
-    judged_.answer.unseen_deviance = judged_.nothing.unseen_deviance;
+  if (!explained_.fit.model.empty()) DropIdle();
+  if (judged_.answer.fit.model.empty()) {
+    judged_.nothing = NothingOf(data_, explained_, is_over_);
+    judged_.answer = judged_.nothing;
     return std::move(judged_);
   }
-  try {
-    FollowUnseen(data_, judged_.nothing.seen.noise, is_over_, judged_.answer);
-  } catch (const NumericalError&) {
+  if (!FollowBoth()) {
     Decide(Names(explained_.fit.model), kNeeded,
            "left out: the machine with it diverges on unseen data");
     LeaveNothing();
@@ -385,7 +399,6 @@ UnseenJudgement UnseenJudge::Run() {
   if (judged_.nothing.unseen_deviance - judged_.answer.unseen_deviance < kLeastGain) {
     GoBack();
   }
-  if (!judged_.answer.fit.model.empty()) DropIdle();
   // Each exchange gains; what went round would be noise of fits.
   for (int exchanges = 0;; ++exchanges) {
     while (!judged_.answer.fit.model.empty() && DropWorst()) {

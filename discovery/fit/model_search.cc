@@ -222,6 +222,7 @@ void ModelSearch::LookAtAll() {
   found_.steps_taken.clear();
   hopeless_.clear();
   worthless_.clear();
+  off_by_.clear();
   asked_forms_of_.clear();
   looks_at_forces_ = false;
   for (Block& block : found_.blocks) {

@@ -138,6 +138,13 @@ class ModelSearch {
     const Model after = After(move, found_.fit.model);
     return !HasTooManyCauses(after) && IsResolved(found_.blocks, after);
   }
+  /// Whether it promises less than first order was off by for a block that it brings.
+  bool PromisesNothing(const ModelMove& move, double promise) const {
+    return std::ranges::any_of(move.added, [&](const Added& added) {
+      const auto off = off_by_.find(added.variation.block);
+      return off != off_by_.end() && promise < off->second;
+    });
+  }
   bool IsFirstLook() const { return is_part_ || found_.ticks > 1; }
   bool IsStopped() const { return options_.stop && options_.stop(); }
   bool IsOver() const { return time_.Seconds() > seconds_ || IsStopped(); }
@@ -196,6 +203,8 @@ class ModelSearch {
   std::vector<Model> hopeless_;
   /// What moves made of this one along this path, and fits behind kept gains found no better.
   std::vector<Model> worthless_;
+  /// What first order promised of blocks that came in alone, and a fit lost instead.
+  std::map<std::size_t, double> off_by_;
   /// Dry friction whose forms have been asked (other_friction.h).
   Model asked_forms_of_;
   Explained found_;

@@ -121,7 +121,9 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   };
   const std::size_t noises = whitenings.behind.size();
   std::vector<Attempt> attempts;
-  const auto may_be = [&](const ModelMove& move) { return MayBe(move); };
+  const auto may_be = [&](const ModelMove& move) {
+    return MayBe(move) && !PromisesNothing(move, moves.score - move.score);
+  };
   for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
     const Model model = After(*move, found_.fit.model);
     attempts.push_back({model, move, {}});
@@ -195,6 +197,11 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
                   -gain);
     Say(text + ModelText(found_.blocks, fit.model));
     Rate(one.model, -gain);
+    if (iterations > 0 && gain < 0.0 && one.move->removed.empty() &&
+        one.move->added.size() == 1) {
+      double& off = off_by_[one.move->added.front().variation.block];
+      off = std::max(off, moves.score - one.move->score - gain);
+    }
     if (gain < kLeastGain) {
       Decide(fit.model, -gain, "fitted, it is worth less than it costs");
       if (iterations > 0) worthless_.push_back(one.model);
