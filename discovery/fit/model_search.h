@@ -203,7 +203,8 @@ class ModelSearch {
   std::vector<Model> hopeless_;
   /// What moves made of this one along this path, and fits behind kept gains found no better.
   std::vector<Model> worthless_;
-  /// What first order promised of blocks that came in alone, and a fit lost instead.
+  /// What first order promised of blocks that came in alone, and a fit lost instead, where it knew
+  /// nothing of them.
   std::map<std::size_t, double> off_by_;
   /// Dry friction whose forms have been asked (other_friction.h).
   Model asked_forms_of_;

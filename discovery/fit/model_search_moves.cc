@@ -27,6 +27,8 @@ namespace {
 // Of fits behind the gains of another model, which the best are fitted anew behind their own: as
 // many as two laws take that say nearly the same, of which one leaves.
 constexpr int kIterations = 6;
+// What loses so many times what first order promised is what that knows nothing of.
+constexpr double kNonsense = 10.0;
 // From there a fit goes the same way.
 constexpr double kAsNear = 1e-3;
 
@@ -197,10 +199,11 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
                   -gain);
     Say(text + ModelText(found_.blocks, fit.model));
     Rate(one.model, -gain);
-    if (iterations > 0 && gain < 0.0 && one.move->removed.empty() &&
+    const double promised = moves.score - one.move->score;
+    if (iterations > 0 && -gain > kNonsense * promised && one.move->removed.empty() &&
         one.move->added.size() == 1) {
       double& off = off_by_[one.move->added.front().variation.block];
-      off = std::max(off, moves.score - one.move->score - gain);
+      off = std::max(off, promised - gain);
     }
     if (gain < kLeastGain) {
       Decide(fit.model, -gain, "fitted, it is worth less than it costs");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mjdiag/plugin/effects/registry.h"
@@ -62,6 +63,46 @@ TEST(MovedModel, LeavesWhatIsNoDryFriction) {
     ASSERT_EQ(other.size(), 1u);
     EXPECT_EQ(other[0].block, 0u);
   }
+}
+
+ModelMove Bringing(const std::vector<std::size_t>& blocks, double score) {
+  ModelMove move;
+  for (const std::size_t block : blocks) {
+    Added added;
+    added.variation.block = block;
+    move.added.push_back(added);
+  }
+  move.score = score;
+  return move;
+}
+
+/// What the moves bring that are fitted, of those that are better than a model of score 0.
+std::vector<std::vector<std::size_t>> Fitted(std::vector<ModelMove> best) {
+  Moves moves;
+  moves.best = std::move(best);
+  std::vector<std::vector<std::size_t>> fitted;
+  for (const ModelMove* move :
+       ToBeFitted(moves, 4, [](const ModelMove&) { return true; })) {
+    fitted.emplace_back();
+    for (const Added& added : move->added) {
+      fitted.back().push_back(added.variation.block);
+    }
+  }
+  return fitted;
+}
+
+using Blocks = std::vector<std::vector<std::size_t>>;
+
+TEST(MovesToBeFitted, DoNotDoAllThatABetterOneDoesAndMore) {
+  EXPECT_EQ(
+      Fitted({Bringing({1}, -100.0), Bringing({1, 2}, -90.0), Bringing({3}, -80.0)}),
+      (Blocks{{1}, {3}}));
+}
+
+TEST(MovesToBeFitted, AreTheSimplerOnesWhereMoreGainsNextToNothing) {
+  EXPECT_EQ(Fitted({Bringing({1, 2}, -102.0), Bringing({1}, -100.0)}), (Blocks{{1}}));
+  EXPECT_EQ(Fitted({Bringing({1, 2}, -150.0), Bringing({1}, -100.0)}),
+            (Blocks{{1, 2}, {1}}));
 }
 
 }  // namespace
