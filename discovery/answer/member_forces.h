@@ -1,9 +1,8 @@
 #pragma once
 // How large the force of every member of a model is, along the motion: what the machine does
 // otherwise without it in every tick, as forces at the joints. One that is no more at any
-// joint than a hundredth of what all of them do there, or of what physics steps do that the
-// record does not know, is nothing that anybody would miss, however surely many samples tell it:
-// steps are taken away to second order (Machine::WithoutSteps).
+// joint than a hundredth of what all of them do there is nothing that anybody would miss,
+// however surely many samples tell it.
 
 #include <Eigen/Core>
 #include <vector>

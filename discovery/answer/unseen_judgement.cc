@@ -216,8 +216,7 @@ bool UnseenJudge::DropWorst() {
   Decide("without " + Names({model[worst]}), judged_.losses[worst].unseen,
          IsRefuted(judged_.losses[worst])
              ? "left out: data that no fit saw are predicted as well without it"
-             : "left out: its force is less than a hundredth of what is missing, or of "
-               "what physics steps do");
+             : "left out: its force is less than a hundredth of what is missing");
   judged_.answer = std::move(*best);
   judged_.places.erase(judged_.places.begin() + static_cast<std::ptrdiff_t>(worst));
   judged_.losses.clear();
@@ -362,8 +361,7 @@ void UnseenJudge::DropIdle() {
   }
   judged_.places = std::move(places);
   Decide("without " + Names(left_out), 0.0,
-         "left out: its force is less than a hundredth of what is missing, or of what "
-         "physics steps do");
+         "left out: its force is less than a hundredth of what is missing");
 }
 
 bool UnseenJudge::FollowBoth() {

@@ -48,14 +48,5 @@ TEST_F(MemberForces, AreMissedFromAHundredthOfAllOn) {
   EXPECT_EQ(Missed({friction, ripple(1.5)}), (std::vector<bool>{false, false}));
 }
 
-// Of steps all but what is of second order is taken away: by itself the ripple is all there is.
-TEST_F(MemberForces, AreMissedFromAHundredthOfWhatStepsDoOn) {
-  const auto ripple = [&](double amplitude) {
-    return Of("force_ripple@load", Eigen::Vector3d(amplitude, 0.02, 0.7));
-  };
-  EXPECT_EQ(Missed({ripple(1e-6)}), std::vector<bool>{true});
-  EXPECT_EQ(Missed({ripple(1.5)}), std::vector<bool>{false});
-}
-
 }  // namespace
 }  // namespace mjdiag
