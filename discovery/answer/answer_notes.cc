@@ -140,9 +140,8 @@ std::string NoteOfInputDelay(double delay, double step) {
          " later than in the simulation; it has physics steps of " +
          FormatQuantity(step, "s") +
          ", which are off by up to half of that; all figures of this answer, before "
-         "and "
-         "after, are of the machine without what its steps add (mjdiag compare is with "
-         "it)";
+         "and after, are of the machine without what its steps add (mjdiag compare is "
+         "with it)";
 }
 
 std::string NoteOfExperiment(const Machine& machine, const Cause& one,

@@ -58,9 +58,10 @@ std::vector<FilterStart> UnseenStarts(const AnswerData& data, const ModelOnRuns&
   return FilterStarts(data.With(one.fit.model), data.run.unseen, data.reading_sd);
 }
 
-/// The same behind the likeliest of some noises.
+/// Along what fits did not see, behind the likeliest of some noises.
 void FollowUnseenBehind(const std::vector<FilterNoise>& noises, const AnswerData& data,
                         const IsTimeOver& is_over, ModelOnRuns& one) {
+  const Machine machine = data.With(one.fit.model);
   const std::vector<FilterStart> starts = UnseenStarts(data, one);
   one.unseen_deviance = std::numeric_limits<double>::infinity();
   for (const FilterNoise& noise : noises) {
@@ -68,8 +69,7 @@ void FollowUnseenBehind(const std::vector<FilterNoise>& noises, const AnswerData
     TakeUnseen(
         data,
         [&] {
-          return RunForceFilter(data.With(one.fit.model), data.run.unseen,
-                                one.seen.dofs, starts, noise);
+          return RunForceFilter(machine, data.run.unseen, one.seen.dofs, starts, noise);
         },
         one);
   }
@@ -94,25 +94,11 @@ void FollowUnseenFrom(const AnswerData& data, const FilterNoise& near,
 
 void FollowUnseen(const AnswerData& data, const FilterNoise& given,
                   const std::function<bool()>& is_over, ModelOnRuns& one) {
-  const Machine machine = data.With(one.fit.model);
-  const MeasuredRun& run = data.run.unseen;
-  const std::vector<FilterStart> starts = UnseenStarts(data, one);
-  one.unseen_deviance = std::numeric_limits<double>::infinity();
-  for (const double part : {0.0, 1e-2}) {
-    const FilterNoise noise = AtLeast(one.seen.noise, part, given);
-    if (part > 0.0 && noise.size == one.seen.noise.size) continue;
-    if (std::isfinite(one.unseen_deviance) && is_over()) break;
-    TakeUnseen(
-        data,
-        [&] { return RunForceFilter(machine, run, one.seen.dofs, starts, noise); },
-        one);
-  }
-  if (std::isfinite(one.unseen_deviance) && !is_over()) {
-    FollowUnseenFrom(data, one.unseen.noise, is_over, one);
-  }
-  if (!std::isfinite(one.unseen_deviance)) {
-    throw NumericalError("replay: diverges on unseen data");
-  }
+  std::vector<FilterNoise> noises{one.seen.noise};
+  const FilterNoise larger = AtLeast(one.seen.noise, 1e-2, given);
+  if (larger.size != one.seen.noise.size) noises.push_back(larger);
+  FollowUnseenBehind(noises, data, is_over, one);
+  if (!is_over()) FollowUnseenFrom(data, one.unseen.noise, is_over, one);
 }
 
 ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,

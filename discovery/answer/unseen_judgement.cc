@@ -121,8 +121,7 @@ std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
       fitted[m] = RefittedByPieces(data_, models[m],
                                    {&judged_.answer, &judged_.nothing}, is_over_);
       if (IsBeyondDoubt(LossOf(*fitted[m])) || is_over_()) return;
-      fitted[m] =
-          Refined(data_, *std::move(fitted[m]), judged_.nothing.seen.noise, is_over_);
+      fitted[m] = Refined(data_, *fitted[m], judged_.nothing.seen.noise, is_over_);
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }
