@@ -112,8 +112,8 @@ ModelOnRuns RefittedByPieces(const AnswerData& data, const Model& model,
   }
   ModelOnRuns one;
   Refit(data, model,
-        FilterByPiecesFrom(data.With(model), data.run.seen, data.reading_sd,
-                           others.front()->seen.dofs, near, is_over),
+        FilterLikeliestFrom(data.With(model), data.run.seen, data.reading_sd,
+                            others.front()->seen.dofs, near, is_over, NoiseBy::kPieces),
         is_over, one);
   near_unseen.push_back(one.seen.noise);
   FollowUnseenBehind(near_unseen, data, is_over, one);

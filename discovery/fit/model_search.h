@@ -90,7 +90,10 @@ class ModelSearch {
     double gain = 0.0;
   };
   StepsBehind LikelySteps(const Standing& standing, std::size_t noise) const;
+  /// Takes likely steps with values anew where that is better.
   bool TakeStepsBehind(const Standing& standing, std::size_t noise);
+  bool TakeSteps(const StepsBehind& likely, const FilterNoise& near);
+  void SayOf(PhysicsSteps steps, double score) const;
   /// Whether a part of the run promises next to nothing: what is that small is told apart by
   /// all of it.
   bool IsForAll(const Moves& moves) const;

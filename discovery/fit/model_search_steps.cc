@@ -16,12 +16,16 @@
 
 namespace mjdiag {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
 
-/// Of a number that is between its ends.
-constexpr double kPriceOfShare = 2.0;
+/// Steps that are known cost nothing; a share of them is a number.
+double PriceOf(double without) {
+  constexpr double kPriceOfShare = 2.0;
+  return without == 0.0 || without == 1.0 ? 0.0 : kPriceOfShare;
+}
 
 /// Where the parabola through three points is least, between 0 and 1.
 double LeastOfParabola(const std::vector<std::pair<double, double>>& points) {
@@ -51,39 +55,85 @@ FilterPath ModelSearch::Filtered(PhysicsSteps steps) const {
   }
 }
 
-// By first order, which of steps is exact.
+// By first order, which of steps is exact. Values make up for steps as far as they can, so that
+// both are asked at once: with W what values do, r what is left and o what other steps do,
+// the share p of o is least squares behind a projection,
+//
+//   p = o^T M r / o^T M o,    M = I - W (W^T W + L)^-1 W^T,
+//
+// L what is known of the values.
 ModelSearch::StepsBehind ModelSearch::LikelySteps(const Standing& standing,
                                                   std::size_t noise) const {
   const Whitening& map = standing.whitenings.behind[noise];
-  const VectorXd other = map.Of({&standing.exact.other_steps}).col(0);
-  const double bend = other.squaredNorm();
-  if (!(bend > 0.0)) return {steps_, 0.0};
-  const double slope = other.dot(map.left());
+  std::vector<const Column*> columns;
+  std::vector<double> sd, mean;
+  for (const Term& term : standing.exact.terms) {
+    for (std::size_t i = 0; i < term.columns.size(); ++i) {
+      columns.push_back(&term.columns[i]);
+      sd.push_back(term.sd[static_cast<Eigen::Index>(i)]);
+      mean.push_back(term.mean[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  const auto count = std::ssize(columns);
+  columns.push_back(&standing.exact.other_steps);
+  const MatrixXd whitened = map.Of(columns);
+  const auto W = whitened.leftCols(count);
+  const VectorXd other = whitened.col(count);
+  double bend = other.squaredNorm();
+  double slope = other.dot(map.left());
+  if (count > 0) {
+    const VectorXd known = VectorXd::Map(sd.data(), count).cwiseAbs2().cwiseInverse();
+    const MatrixXd H = MatrixXd(W.transpose() * W) + MatrixXd(known.asDiagonal());
+    const VectorXd both = W.transpose() * other;
+    const VectorXd made_up = H.ldlt().solve(both);
+    bend -= made_up.dot(both);
+    slope -= made_up.dot(W.transpose() * map.left() +
+                         known.cwiseProduct(VectorXd::Map(mean.data(), count)));
+  }
+  StepsBehind likeliest{steps_, 0.0};
+  // Of steps that values make up for nothing is known.
+  constexpr double kSeen = 1e-6;
+  if (!(bend > kSeen * other.squaredNorm())) return likeliest;
   // As far as there are steps to take away, or to give back.
   const double whole = steps_.Other().without - steps_.without;
-  const double s = std::clamp(steps_.without + whole * slope / bend, 0.0, 1.0);
-  const double part = (s - steps_.without) / whole;
-  return {{s, steps_.finer}, 2.0 * part * slope - part * part * bend};
+  const auto gain = [&](double without) {
+    const double part = (without - steps_.without) / whole;
+    return 2.0 * part * slope - part * part * bend - PriceOf(without) +
+           PriceOf(steps_.without);
+  };
+  const double least = steps_.without + whole * slope / bend;
+  for (const double without : {0.0, 1.0, std::clamp(least, 0.0, 1.0)}) {
+    if (gain(without) > likeliest.gain) {
+      likeliest = {{without, steps_.finer}, gain(without)};
+    }
+  }
+  return likeliest;
 }
 
 /// What makes up for steps are latent forces, too: behind smaller ones other steps may be
 /// likelier.
 bool ModelSearch::TakeStepsBehind(const Standing& standing, std::size_t noise) {
-  const StepsBehind own = LikelySteps(standing, 0);
-  if (own.gain > kLeastGain && ChooseSteps(own.steps.without)) return true;
-  if (noise == 0) return false;
-  const StepsBehind likely = LikelySteps(standing, noise);
-  if (likely.gain < kLeastGain) return false;
-  auto settled = SettleRivals(Beside(likely.steps), {found_.fit},
-                              NoisesBeside(standing.whitenings.noises[noise]),
+  for (const std::size_t behind : {std::size_t{0}, noise}) {
+    const StepsBehind likely = LikelySteps(standing, behind);
+    if (likely.gain > kLeastGain &&
+        TakeSteps(likely, standing.whitenings.noises[behind])) {
+      return true;
+    }
+    if (noise == 0) break;
+  }
+  return false;
+}
+
+bool ModelSearch::TakeSteps(const StepsBehind& likely, const FilterNoise& near) {
+  auto settled = SettleRivals(Beside(likely.steps), {found_.fit}, NoisesBeside(near),
                               found_.score, likely.gain);
+  const double price = PriceOf(likely.steps.without) - PriceOf(steps_.without);
   const bool is_better =
-      settled.front() && settled.front()->score() < found_.score - kLeastGain;
+      settled.front() && settled.front()->score() + price < found_.score - kLeastGain;
   if (!is_better) return false;
-  Say("steps: " + Difference(settled.front()->score()));
+  SayOf(likely.steps, settled.front()->score());
   steps_ = likely.steps;
   Take(std::move(*settled.front()));
-  ChooseSteps(steps_.without);
   return true;
 }
 
@@ -127,10 +177,8 @@ bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
     asked.push_back(least);
     paths.push_back(Filtered(least));
   }
-  // Steps that are known cost nothing; a share of them is a number.
   const auto cost = [&](std::size_t i) {
-    const bool is_share = asked[i].without != 0.0 && asked[i].without != 1.0;
-    return paths[i].deviance + (is_share ? kPriceOfShare : 0.0);
+    return paths[i].deviance + PriceOf(asked[i].without);
   };
   std::size_t best = 0;
   for (std::size_t i = 1; i < asked.size(); ++i) {
@@ -171,11 +219,15 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   return true;
 }
 
-void ModelSearch::TakeSteps(PhysicsSteps steps, FilterPath path) {
+void ModelSearch::SayOf(PhysicsSteps steps, double score) const {
   char text[80];
-  std::snprintf(text, sizeof text, "steps %.3f of %d: %.1f", 1.0 - steps.without,
-                steps.finer, path.deviance - found_.path.deviance);
-  Say(text);
+  std::snprintf(text, sizeof text, "steps %.3f of %d: ", 1.0 - steps.without,
+                steps.finer);
+  Say(text + Difference(score));
+}
+
+void ModelSearch::TakeSteps(PhysicsSteps steps, FilterPath path) {
+  SayOf(steps, found_.score + path.deviance - found_.path.deviance);
   steps_ = steps;
   // Values made up for the steps as far as they could.
   Take(SettleNear(Beside(steps_), found_.fit, std::move(path)));

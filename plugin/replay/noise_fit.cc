@@ -183,32 +183,15 @@ class LikeliestOf {
 };
 
 /// Of all of a run, from the noise that is likeliest by pieces of it on.
-/// @param refines  whether all of it is asked for a likelier one
 FilterPath OfAll(const Machine& machine, const MeasuredRun& run,
                  const VectorXd& reading_sd, const std::vector<Index>& dofs,
-                 const LikeliestOf& by_pieces, const FilterNoise& otherwise,
-                 const IsTimeOver& is_over, bool refines = true) {
-  if (by_pieces.best().samples() == run.samples()) return by_pieces.best();
+                 const LikeliestOf& of_pieces, const FilterNoise& otherwise,
+                 const IsTimeOver& is_over, NoiseBy by) {
+  if (of_pieces.best().samples() == run.samples()) return of_pieces.best();
   LikeliestOf all(machine, run, reading_sd, dofs, LongestMemory(run), is_over);
-  if (!all.Follow(by_pieces.best().noise)) all.Follow(otherwise);
-  if (refines) all.Improve(false);
+  if (!all.Follow(of_pieces.best().noise)) all.Follow(otherwise);
+  if (by == NoiseBy::kAllOfRun) all.Improve(false);
   return all.best();
-}
-
-FilterPath FromPieces(const Machine& machine, const MeasuredRun& run,
-                      const VectorXd& reading_sd, const std::vector<Index>& dofs,
-                      const std::vector<FilterNoise>& near, const IsTimeOver& is_over,
-                      bool refines) {
-  const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
-  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, LongestMemory(run), is_over);
-  for (const FilterNoise& noise : near) of_pieces.Follow(noise);
-  // What was near to a machine may be far from another: one that rubs sticks behind the small
-  // forces of one that does not.
-  of_pieces.Follow(
-      FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd));
-  of_pieces.Improve(true);
-  return OfAll(machine, run, reading_sd, dofs, of_pieces, near.back(), is_over,
-               refines);
 }
 
 }  // namespace
@@ -238,23 +221,24 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
     }
   }
   of_pieces.Improve(true);
-  return OfAll(machine, run, reading_sd, dofs, of_pieces, fast, is_over);
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, fast, is_over,
+               NoiseBy::kAllOfRun);
 }
 
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const VectorXd& reading_sd,
                                const std::vector<Index>& dofs,
                                const std::vector<FilterNoise>& near,
-                               const IsTimeOver& is_over) {
-  return FromPieces(machine, run, reading_sd, dofs, near, is_over, true);
-}
-
-FilterPath FilterByPiecesFrom(const Machine& machine, const MeasuredRun& run,
-                              const VectorXd& reading_sd,
-                              const std::vector<Index>& dofs,
-                              const std::vector<FilterNoise>& near,
-                              const IsTimeOver& is_over) {
-  return FromPieces(machine, run, reading_sd, dofs, near, is_over, false);
+                               const IsTimeOver& is_over, NoiseBy by) {
+  const MeasuredRun pieces = PiecesOfRun(machine, run, dofs);
+  LikeliestOf of_pieces(machine, pieces, reading_sd, dofs, LongestMemory(run), is_over);
+  for (const FilterNoise& noise : near) of_pieces.Follow(noise);
+  // What was near to a machine may be far from another: one that rubs sticks behind the small
+  // forces of one that does not.
+  of_pieces.Follow(
+      FollowingNoise(machine, pieces, dofs, of_pieces.starts(), reading_sd));
+  of_pieces.Improve(true);
+  return OfAll(machine, run, reading_sd, dofs, of_pieces, near.back(), is_over, by);
 }
 
 FilterPath FilterLikelier(const Machine& machine, const MeasuredRun& run,

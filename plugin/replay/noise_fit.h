@@ -45,21 +45,18 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
                            const Eigen::VectorXd& reading_sd,
                            const IsTimeOver& is_over = {});
 
+/// How far a likely noise is asked: behind what is likeliest by pieces another one may be
+/// likelier of all of the run, by some hundred of -2 ln L.
+enum class NoiseBy { kAllOfRun, kPieces };
+
 /// The path of a run with the noise that is most likely from some near ones on.
 /// @param dofs  with a latent force, of all of those noises
 FilterPath FilterLikeliestFrom(const Machine& machine, const MeasuredRun& run,
                                const Eigen::VectorXd& reading_sd,
                                const std::vector<Eigen::Index>& dofs,
                                const std::vector<FilterNoise>& near,
-                               const IsTimeOver& is_over = {});
-
-/// The same behind the noise that is likeliest by pieces of the run: of all of it another one may
-/// be likelier, by some hundred of -2 ln L.
-FilterPath FilterByPiecesFrom(const Machine& machine, const MeasuredRun& run,
-                              const Eigen::VectorXd& reading_sd,
-                              const std::vector<Eigen::Index>& dofs,
-                              const std::vector<FilterNoise>& near,
-                              const IsTimeOver& is_over = {});
+                               const IsTimeOver& is_over = {},
+                               NoiseBy by = NoiseBy::kAllOfRun);
 
 /// The path of a machine along a run with a noise that is likelier, from its own on.
 /// @param readings  so many say which
