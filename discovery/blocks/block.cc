@@ -300,6 +300,7 @@ bool IsAllowed(const Block& block, const RegressorValues& values) {
   for (Index i = 0; i < values->size(); ++i) {
     const FitParameter& parameter =
         block.candidate->parameters[static_cast<std::size_t>(i)];
+    if (!parameter.IsSeen((*values)[i])) return false;
     if (IsShape(parameter.role)) continue;
     if (std::abs((*values)[i] - parameter.nothing) < parameter.least_size) return false;
     if ((*values)[i] < parameter.lower || (*values)[i] > parameter.upper) return false;

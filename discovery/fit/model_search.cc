@@ -172,7 +172,7 @@ void ModelSearch::Prepare() {
   found_.path = FilterLikeliest(machine_, run_, reading_sd_, is_over);
   const FilterPath nothing = found_.path;
   found_.score = found_.path.deviance;
-  ChooseSteps();
+  found_.path = Timed(found_.fit.model, found_.path);
   candidates_ = ChooseCandidates(machine_, options_.choice, true);
   found_.nothing = nothing;
   const MeasuredRun all = is_part_ ? Coarser(whole_, found_.ticks) : as_measured_;
@@ -210,6 +210,13 @@ FilterPath ModelSearch::Along(const Machine& machine, const MeasuredRun& run,
                         NoiseInTicksOf(path, run.sample_time));
 }
 
+FilterPath ModelSearch::Timed(const Model& model, const FilterPath& path) {
+  const double begin = time_.Seconds();
+  FilterPath timed = Along(Made(model, steps_), run_, path);
+  seconds_of_run_ = time_.Seconds() - begin;
+  return timed;
+}
+
 void ModelSearch::LookAtAll() {
   seconds_ = options_.seconds;
   const int before = found_.ticks;
@@ -231,7 +238,7 @@ void ModelSearch::LookAtAll() {
   if (ticks != before) found_.nothing = Along(machine_, whole_, found_.nothing);
   try {
     // Also of what has been asked to end.
-    found_.path = Along(Made(found_.fit.model, steps_), run_, found_.path);
+    found_.path = Timed(found_.fit.model, found_.path);
   } catch (const NumericalError&) {
     found_.fit = {};
     found_.path = found_.nothing;

@@ -115,6 +115,8 @@ class ModelSearch {
   /// A machine along a run, behind the noise of a path of other ticks.
   FilterPath Along(const Machine& machine, const MeasuredRun& run,
                    const FilterPath& path) const;
+  /// The same beside the run that is looked at, which tells how long a filter takes.
+  FilterPath Timed(const Model& model, const FilterPath& path);
   /// From pieces to all of the run, and to every tick if that tells more.
   void LookAtAll();
   void Decide(const Model& tried, double score, const std::string& why) {
@@ -163,18 +165,9 @@ class ModelSearch {
   Machine Made(const Model& model, PhysicsSteps steps) const {
     return steps.Of(machine_.With(ChangesOfModel(found_.blocks, model)));
   }
-  /// Is the run of a machine with the physics steps of the model, as one that was simulated
-  /// with it, of one that has none, or of shorter ones?
-  /// @param near  the share of them that is taken away, about; none: it may be any
-  bool ChooseSteps(std::optional<double> near = {});
-  bool ChooseStepsOf(const std::vector<double>& shares);
   /// Whether the model's steps hide something that finer ones show.
   /// @param beat  a score
   bool ChooseFinerSteps(double beat);
-  /// Of infinite deviance where the machine diverges.
-  FilterPath Filtered(PhysicsSteps steps) const;
-  /// @param path  with those steps
-  void TakeSteps(PhysicsSteps steps, FilterPath path);
   /// Whether what some hundred filters take is a small part of the time that is left.
   bool HasTimeForFits() const;
   /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.

@@ -1,9 +1,7 @@
 // Which physics steps the run of a model search knows (physics_steps.h).
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,7 +9,6 @@
 #include "mjdiag/discovery/fit/converged_model.h"
 #include "mjdiag/discovery/fit/model_search.h"
 #include "mjdiag/discovery/regression/moves.h"
-#include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
 
 namespace mjdiag {
@@ -27,33 +24,7 @@ double PriceOf(double without) {
   return without == 0.0 || without == 1.0 ? 0.0 : kPriceOfShare;
 }
 
-/// Where the parabola through three points is least, between 0 and 1.
-double LeastOfParabola(const std::vector<std::pair<double, double>>& points) {
-  const bool are_known = std::ranges::all_of(
-      points, [](const auto& one) { return std::isfinite(one.second); });
-  if (points.size() < 3 || !are_known) return points.front().first;
-  const auto slope = [&](std::size_t i, std::size_t j) {
-    return (points[j].second - points[i].second) / (points[j].first - points[i].first);
-  };
-  const double bend = (slope(1, 2) - slope(0, 1)) / (points[2].first - points[0].first);
-  // Where it has no least it goes down to one of the ends.
-  const double middle = 0.5 * (points[0].first + points[1].first);
-  if (!(bend > 0.0)) return slope(0, 1) + bend * (0.5 - middle) < 0.0 ? 1.0 : 0.0;
-  return std::clamp(middle - 0.5 * slope(0, 1) / bend, 0.0, 1.0);
-}
-
 }  // namespace
-
-FilterPath ModelSearch::Filtered(PhysicsSteps steps) const {
-  try {
-    return RunForceFilter(With(found_.fit.model, steps), run_, found_.path.dofs,
-                          found_.path.starts, found_.path.noise);
-  } catch (const NumericalError&) {
-    FilterPath diverged;
-    diverged.deviance = std::numeric_limits<double>::infinity();
-    return diverged;
-  }
-}
 
 // By first order, which of steps is exact. Values make up for steps as far as they can, so that
 // both are asked at once: with W what values do, r what is left and o what other steps do,
@@ -137,58 +108,6 @@ bool ModelSearch::TakeSteps(const StepsBehind& likely, const FilterNoise& near) 
   return true;
 }
 
-bool ModelSearch::ChooseSteps(std::optional<double> near) {
-  // Behind latent forces that make up for steps their share is hardly seen: it is asked again
-  // behind those that are left, nearer by.
-  constexpr double kApart = 0.02;
-  const auto choose_near = [&](double share) {
-    const double at = std::clamp(share, kApart, 1.0 - kApart);
-    return ChooseStepsOf({at - kApart, at, at + kApart});
-  };
-  if (IsOver()) return false;
-  const double before = steps_.without;
-  if (!(near ? choose_near(*near) : ChooseStepsOf({0.0, 0.5, 1.0}))) return false;
-  for (int round = 0; round < 3 && !IsOver(); ++round) {
-    if (!choose_near(steps_.without)) break;
-  }
-  return steps_.without != before;
-}
-
-// What steps do is proportional to them, so that -2 ln L is a parabola over their share.
-bool ModelSearch::ChooseStepsOf(const std::vector<double>& shares) {
-  std::vector<PhysicsSteps> asked{steps_};
-  for (const double without : shares) {
-    if (without != steps_.without) asked.push_back({without, steps_.finer});
-  }
-  std::vector<FilterPath> paths(asked.size());
-  const double begin = time_.Seconds();
-  ParallelForAll(static_cast<int>(asked.size()) - 1, [&](int number) {
-    const auto i = static_cast<std::size_t>(number) + 1;
-    paths[i] = Filtered(asked[i]);
-  });
-  seconds_of_run_ = (time_.Seconds() - begin) / static_cast<double>(asked.size() - 1);
-  paths.front().deviance = found_.path.deviance;
-  std::vector<std::pair<double, double>> known;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    known.emplace_back(asked[i].without, paths[i].deviance);
-  }
-  const PhysicsSteps least{LeastOfParabola(known), steps_.finer};
-  if (std::ranges::find(asked, least.without, &PhysicsSteps::without) == asked.end()) {
-    asked.push_back(least);
-    paths.push_back(Filtered(least));
-  }
-  const auto cost = [&](std::size_t i) {
-    return paths[i].deviance + PriceOf(asked[i].without);
-  };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < asked.size(); ++i) {
-    if (cost(i) < cost(best)) best = i;
-  }
-  if (cost(best) > cost(0) - kLeastGain) return false;
-  TakeSteps(asked[best], std::move(paths[best]));
-  return true;
-}
-
 // What is of second order in them is of no law: it comes before one that explains less. Asking
 // takes as long as some runs, and all runs take as many times longer then.
 bool ModelSearch::ChooseFinerSteps(double beat) {
@@ -202,12 +121,17 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   // Of steps as long as those of the run nothing is left to take away.
   const double own = 1.0 - steps_.without;
   const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner * steps_.finer};
-  FilterPath path = Filtered(finer);
+  FilterPath path;
+  try {
+    path = RunForceFilter(With(found_.fit.model, finer), run_, found_.path.dofs,
+                          found_.path.starts, found_.path.noise);
+  } catch (const NumericalError&) {
+    return false;
+  }
   // Values that make up for steps hide them: where little is gained otherwise they are fitted anew.
   constexpr double kLittle = 0.1;  // of what all did
   const bool is_little =
       found_.score - beat < kLittle * (found_.nothing.deviance - found_.score);
-  if (!std::isfinite(path.deviance)) return false;
   const bool may_hide = is_little && !found_.fit.model.empty();
   if (!may_hide && found_.path.deviance - path.deviance < kLeastGain) return false;
   ConvergedModel settled = SettleNear(Beside(finer), found_.fit, std::move(path));
@@ -215,7 +139,6 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   Say("finer steps: " + Difference(settled.score()));
   steps_ = finer;
   Take(std::move(settled));
-  ChooseSteps(steps_.without);
   return true;
 }
 
@@ -224,13 +147,6 @@ void ModelSearch::SayOf(PhysicsSteps steps, double score) const {
   std::snprintf(text, sizeof text, "steps %.3f of %d: ", 1.0 - steps.without,
                 steps.finer);
   Say(text + Difference(score));
-}
-
-void ModelSearch::TakeSteps(PhysicsSteps steps, FilterPath path) {
-  SayOf(steps, found_.score + path.deviance - found_.path.deviance);
-  steps_ = steps;
-  // Values made up for the steps as far as they could.
-  Take(SettleNear(Beside(steps_), found_.fit, std::move(path)));
 }
 
 }  // namespace mjdiag

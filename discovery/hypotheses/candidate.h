@@ -33,6 +33,11 @@ struct FitParameter {
   /// Of the period of a wave, the stroke that it goes through; of its frequency, the time:
   /// what tells it from its neighbours. 0 of anything else.
   double extent = 0.0;
+  /// Of the period of a wave: longer than one go, so that none is seen come round, and shorter
+  /// than two gaps between goes, so that other periods look like it (Nyquist).
+  double unseen_from = 0.0;
+  double unseen_to = 0.0;
+  bool IsSeen(double value) const { return value <= unseen_from || value >= unseen_to; }
 };
 
 /// An effect and where it acts, without values.

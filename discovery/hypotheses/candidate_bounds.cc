@@ -45,6 +45,26 @@ double StepOf(VectorXd values) {
   return few > 1.0 && static_cast<double>(whole) > kNearlyAll * few ? step : 0.0;
 }
 
+/// The longest way that records go through, and the largest gap between what they have seen.
+struct Ways {
+  double longest = 0.0;
+  double gap = 0.0;
+};
+
+Ways WaysOf(VectorXd values, const VectorXd& time) {
+  Ways ways;
+  for (Index first = 0, k = 1; k <= values.size(); ++k) {
+    if (k < values.size() && time[k] > time[k - 1]) continue;
+    ways.longest = std::max(ways.longest, Range(values.segment(first, k - first)));
+    first = k;
+  }
+  std::ranges::sort(values);
+  for (Index k = 1; k < values.size(); ++k) {
+    ways.gap = std::max(ways.gap, values[k] - values[k - 1]);
+  }
+  return ways;
+}
+
 }  // namespace
 
 void BoundByReadings(std::vector<Candidate>& candidates, const Machine& machine,
@@ -179,8 +199,14 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
           break;
       }
       if (place - 1 != wave) continue;
-      parameter.extent =
-          parameter.role == Role::kPeriod ? stroke : motion.time.maxCoeff();
+      parameter.extent = motion.time.maxCoeff();
+      if (parameter.role != Role::kPeriod) continue;
+      parameter.extent = stroke;
+      const Ways ways =
+          WaysOf(candidate.effect->site() == SiteKind::kSensor ? VectorXd(at.y()) : q,
+                 motion.time);
+      parameter.unseen_from = ways.longest;
+      parameter.unseen_to = 2.0 * ways.gap;
     }
   }
 }

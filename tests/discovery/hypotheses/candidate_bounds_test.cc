@@ -38,6 +38,27 @@ TEST(BoundByRecord, KeepsShapesWithinWhatTheMotionReaches) {
             Parameter(before, "coulomb_friction@load", "force").upper);
 }
 
+// Goes of 10 mm each, 50 mm apart: a wave of 5 mm is seen to come round, and one of 200 mm from
+// one go to the next; one of 50 mm looks the same at every go.
+TEST(BoundByRecord, LeavesNoPeriodsThatGapsBetweenRecordsMakeUp) {
+  const test::Stage stage;
+  auto candidates = ListCandidates(stage.machine);
+  ObservedMotion motion = test::MotionOf(stage);
+  const Eigen::Index each = motion.samples() / 5;
+  for (Eigen::Index k = 0; k < motion.samples(); ++k) {
+    const Eigen::Index go = std::min<Eigen::Index>(4, k / each);
+    const double way = static_cast<double>(k - go * each) / static_cast<double>(each);
+    motion.time[k] = way;
+    motion.position(0, k) = 0.05 * static_cast<double>(go) + 0.01 * std::min(1.0, way);
+  }
+  BoundByRecord(candidates, stage.machine, motion);
+  const FitParameter& period = Parameter(candidates, "force_ripple@load", "period");
+  EXPECT_TRUE(period.IsSeen(0.005));
+  EXPECT_TRUE(period.IsSeen(0.2));
+  EXPECT_FALSE(period.IsSeen(0.05));
+  EXPECT_GE(period.upper, 0.2);
+}
+
 // An encoder of 1 um says nothing of waves that repeat with it, or are smaller than half.
 TEST(BoundByReadings, LeavesNoErrorsBelowTheStepOfAnEncoder) {
   const test::Stage stage;
