@@ -209,10 +209,17 @@ Discovery Discover(const Machine& machine, const Measurements& measurements,
          "taken: values that leave less of what lasts predict both "
          "what fits saw and what they did not better"});
   }
+  MissingShare share = ShareLeft(data, judged);
+  // Likelier it may be, of what is worse than the machine as given nobody can use anything.
+  if (share.IsWorse()) {
+    LeaveNothing(
+        data.blocks,
+        "left out: more force is missing on data that no fit saw than without it",
+        share.left, judged);
+    share = ShareLeft(data, judged);
+  }
   discovery.decisions = explained.decisions;
   std::ranges::copy(judged.decisions, std::back_inserter(discovery.decisions));
-
-  const MissingShare share = ShareLeft(data, judged);
   discovery.verdict = VerdictOf(share, !judged.answer.fit.model.empty());
   if (share.is_left && !judged.answer.fit.model.empty()) {
     discovery.force_left = share.left;

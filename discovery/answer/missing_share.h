@@ -12,6 +12,7 @@
 // be more than a thousandth of what accelerates the joints.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 #include "mjdiag/discovery/answer/unseen_judgement.h"
@@ -24,6 +25,8 @@ struct MissingShare {
   double left = 0.0;        ///< share of what was missing, of forces
   bool is_missing = false;  ///< beside the machine as given
   bool is_left = false;     ///< beside the model
+  /// Whether more is missing on data that no fit saw than beside the machine as given.
+  bool IsWorse() const { return is_left && std::isfinite(left) && left > 1.0; }
 };
 
 MissingShare ShareLeft(const AnswerData& data, const UnseenJudgement& judged);

@@ -25,6 +25,11 @@ struct MemberLoss {
   double seen = 0.0;    ///< of the score, which has its price
   double unseen = 0.0;  ///< of how well unseen data are predicted
   double Total() const { return seen + unseen; }
+  /// That unseen data speak against it by more than fits are off, or that it is not worth its
+  /// price.
+  bool IsRefuted() const;
+  /// Whether no noise that is known better could make it less.
+  bool IsBeyondDoubt() const;
 };
 
 /// Another block in the place of a member.
@@ -50,5 +55,10 @@ struct UnseenJudgement {
 /// @param is_over    whether nothing further may be tried
 UnseenJudgement JudgeUnseen(const AnswerData& data, Explained& explained,
                             const std::function<bool()>& is_over);
+
+/// The machine as given is the answer, and its members are refuted.
+/// @param loss  that it was found by
+void LeaveNothing(const std::vector<Block>& blocks, const std::string& why, double loss,
+                  UnseenJudgement& judged);
 
 }  // namespace mjdiag
