@@ -226,7 +226,11 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
     discovery.kinds.push_back(
         {of.first, of.second, probability, share, sum.is_member && sum.only_numbers});
   }
-  std::ranges::stable_sort(discovery.kinds, std::greater<>(), &FoundKind::probability);
+  // What is certain by what it is worth: nobody tells 99.95 % from 99.99 %.
+  constexpr double kCertain = 0.999;
+  std::ranges::stable_sort(discovery.kinds, std::greater<>(), [&](const FoundKind& one) {
+    return std::pair(std::min(one.probability, kCertain), one.share);
+  });
 }
 
 }  // namespace mjdiag

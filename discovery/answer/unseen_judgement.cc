@@ -59,6 +59,10 @@ std::vector<std::optional<ModelOnRuns>> UnseenJudge::RefittedAll(
   ParallelForAll(static_cast<int>(models.size()), [&](int number) {
     if (is_over_()) return;
     const auto m = static_cast<std::size_t>(number);
+    if (models[m].empty()) {
+      fitted[m] = judged_.nothing;
+      return;
+    }
     try {
       fitted[m] = RefittedByPieces(data_, models[m],
                                    {&judged_.answer, &judged_.nothing}, is_over_);

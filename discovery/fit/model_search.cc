@@ -58,7 +58,7 @@ void ModelSearch::Adopt(Proposal proposal) {
   run_ = std::move(proposal.run);
   steps_ = proposal.steps;
   found_.rivals.clear();  // of the model before
-  ChooseFriction();
+  if (ChooseFriction()) AskRunnersUp(std::move(runners_up_));
   found_.steps_taken.push_back({found_.fit, found_.path.noise});
 }
 
@@ -90,21 +90,48 @@ bool ModelSearch::HasTimeForFits() const {
   return kRuns * seconds_of_run_ < kShareOfTime * (seconds_ - time_.Seconds());
 }
 
-void ModelSearch::ChooseFriction() {
+bool ModelSearch::ChooseFriction() {
   // What was asked of all but the same friction is known.
   constexpr double kAlike = 0.2;
   Model rubs;
   for (const Member& member : found_.fit.model) {
     if (found_.blocks[member.block].IsDryFriction()) rubs.push_back(member);
   }
-  if (AreNear(rubs, asked_forms_of_, kAlike)) return;
+  if (AreNear(rubs, asked_forms_of_, kAlike)) return false;
   asked_forms_of_ = rubs;
   auto other =
       WithOtherFriction(Beside(steps_), {found_.fit, found_.path}, HasTimeForFits());
-  if (!other) return;
+  if (!other) return false;
   Say("joints that stand: " + Difference(other->score()) + "  " +
       ModelText(found_.blocks, other->fit.model));
   Take(std::move(*other));
+  return true;
+}
+
+void ModelSearch::AskRunnersUp(std::vector<Model> runners_up) {
+  const KeptGains gains = KeepGains(found_.path);
+  std::vector<ModelFit> fits;
+  for (const Model& one : runners_up) {
+    const Model model = InFormsOf(found_.blocks, one, found_.fit.model);
+    if (HaveSameBlocks(model, one) || HaveSameBlocks(model, found_.fit.model)) continue;
+    try {
+      fits.push_back(FitModel([&](const Model& of) { return With(of); }, run_,
+                              found_.path, gains, found_.blocks, model, 0));
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  }
+  // Each may come out best.
+  const double hoped = found_.nothing.deviance - found_.score;
+  auto settled = SettleRivals(Beside(steps_), std::move(fits), {found_.path.noise},
+                              found_.score, hoped);
+  for (auto& one : settled) {
+    if (!one || !IsOne(one->fit.model)) continue;
+    if (one->score() > found_.score - kLeastGain) continue;
+    Say("stands, too: " + Difference(one->score()) + "  " +
+        ModelText(found_.blocks, one->fit.model));
+    Take(std::move(*one));
+  }
 }
 
 std::optional<ModelSearch::Proposal> ModelSearch::SmoothedInputs() const {
@@ -128,26 +155,29 @@ void ModelSearch::AddCurves() {
 }
 
 bool ModelSearch::Step() {
-  Standing& standing = StandingNow();
+  runners_up_.clear();
   std::optional<Proposal> move;
   // Inputs that are noise are smoothed where forces say nothing more: before, what a machine
   // lacks passes for noise of its inputs, which takes away what would have told it.
   bool asks_inputs = true;
   if (looks_at_forces_) {
-    move = BestForces(standing);
+    move = BestForces(StandingNow());
     if (!move) {
       asks_inputs = false;
       move = SmoothedInputs();
     }
     looks_at_forces_ = move.has_value();
     // What a drive does is no force along the motion: where nothing is known yet, what looks
-    // like one may be that.
+    // like one may be that, beside the steps that the run knows.
     if (move && found_.fit.model.empty() && HasTimeForFits()) {
-      auto other = BestMove(standing);
+      std::optional<Proposal> other;
+      do {
+        other = BestMove(StandingNow());
+      } while (other && other->settled.fit.model.empty());
       if (other && other->settled.score() < move->settled.score()) move = other;
     }
   }
-  if (!move) move = BestMove(standing);
+  if (!move) move = BestMove(StandingNow());
   if (!move && asks_inputs) move = SmoothedInputs();
   if (!move) return false;
   if (!ChooseFinerSteps(move->settled.score())) Adopt(std::move(*move));
@@ -191,6 +221,9 @@ void ModelSearch::Prepare() {
 
 void ModelSearch::StepOn() {
   try {
+    // What a machine lacks is told apart beside the steps that its run knows.
+    while (found_.fit.model.empty() && !IsOver() && TakeStepsBehind(StandingNow(), 0)) {
+    }
     while (!IsOver() && Step()) {
       char text[80];
       std::snprintf(text, sizeof text, "%.1f  ", found_.score);

@@ -171,7 +171,11 @@ class ModelSearch {
   /// Whether what some hundred filters take is a small part of the time that is left.
   bool HasTimeForFits() const;
   /// Whether joints that rub and stand hold, as machines do, or give way, as simulations do.
-  void ChooseFriction();
+  /// @return whether they do otherwise than the model so far
+  bool ChooseFriction();
+  /// How joints stand may be worth more than what told two models apart that rub: those that
+  /// were nearly as good are asked again with friction of that form.
+  void AskRunnersUp(std::vector<Model> runners_up);
 
   const Machine& given_;
   Machine machine_;  // as given, in the ticks that are looked at
@@ -195,6 +199,8 @@ class ModelSearch {
   bool may_be_at_ends_ = false;
   /// Values and noises are asked to the end.
   bool is_last_ = false;
+  /// Models that a step found better than the one before, and worse than another.
+  std::vector<Model> runners_up_;
   /// Models that were tried in the place of this one and are far from it.
   std::vector<Model> hopeless_;
   /// What moves made of this one along this path, and fits behind kept gains found no better.

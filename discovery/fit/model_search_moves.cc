@@ -274,6 +274,9 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     if (!settled[i]) continue;
     const double score = settled[i]->score() - found_.score;
     Rate(settled[i]->fit.model, score);
+    if (best != i && IsOne(settled[i]->fit.model) && score < -kLeastGain) {
+      runners_up_.push_back(settled[i]->fit.model);
+    }
     Decide(settled[i]->fit.model, score,
            best == i ? "taken"
            : !IsOne(settled[i]->fit.model)

@@ -119,6 +119,19 @@ Model BreakingAway(const std::vector<Block>& blocks, Model model,
   return InForm(blocks, std::move(model), IsOfOneSize, &Block::BreaksAway, values);
 }
 
+Model InFormsOf(const std::vector<Block>& blocks, Model model, const Model& other) {
+  for (Member& member : model) {
+    const Block& own = blocks[member.block];
+    if (!own.IsDryFriction()) continue;
+    const auto form = std::ranges::find_if(other, [&](const Member& one) {
+      return blocks[one.block].IsDryFriction() &&
+             blocks[one.block].resists == own.resists;
+    });
+    if (form != other.end()) member = *form;
+  }
+  return model;
+}
+
 namespace {
 
 /// The one that leaves the fewest members, of those that gain at least half as much as the

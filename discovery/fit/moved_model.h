@@ -29,6 +29,9 @@ Model Springing(const std::vector<Block>& blocks, Model model,
 Model BreakingAway(const std::vector<Block>& blocks, Model model,
                    const Eigen::VectorXd& speeds);
 
+/// The same, with dry friction of each joint in the form that it has in another model.
+Model InFormsOf(const std::vector<Block>& blocks, Model model, const Model& other);
+
 /// The best of all that may be, of which no block comes in with more than two, and the best that
 /// brings one block and nothing else: the fewer come at once, the nearer is first order to what
 /// a fit finds; and, of those that gain half as much as the best, the one that leaves the fewest. None that does

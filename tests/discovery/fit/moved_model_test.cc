@@ -56,6 +56,24 @@ TEST(MovedModel, LetsJointsThatStandGiveWayAndHold) {
   EXPECT_EQ(Abrupt(kFriction, {{3, size}})[0].block, 1u);
 }
 
+// Of a servo a limit of the drive was left for a gain that was worth a thirtieth more, until its
+// friction was of the same form.
+TEST(MovedModel, TakesFormsOfFrictionFromAnotherModelOfTheSameJoint) {
+  std::vector<Block> blocks = kFriction;
+  blocks.push_back(FrictionBlock("yielding_friction"));
+  for (Block& one : blocks) one.resists = "j";
+  blocks.back().resists = "k";
+  const Eigen::VectorXd damps = Eigen::VectorXd::Constant(1, 0.1);
+  const Model model{{0, damps}, {2, Eigen::Vector2d(0.7, 0.2)}};
+  const Eigen::VectorXd size = Eigen::VectorXd::Constant(1, 0.5);
+  const Model same_joint = InFormsOf(blocks, model, {{3, size}});
+  ASSERT_EQ(same_joint.size(), 2u);
+  EXPECT_EQ(same_joint[0].block, 0u);
+  EXPECT_EQ(same_joint[1].block, 3u);
+  EXPECT_EQ(same_joint[1].values, size);
+  EXPECT_EQ(InFormsOf(blocks, model, {{4, size}})[1].block, 2u);
+}
+
 TEST(MovedModel, LeavesWhatIsNoDryFriction) {
   const Model damps{{0, Eigen::VectorXd::Constant(1, 0.7)}};
   for (const Model& other : {Creeping(kFriction, damps), Abrupt(kFriction, damps),
