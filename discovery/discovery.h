@@ -178,7 +178,7 @@ struct Discovery {
   std::vector<Decision> decisions;  ///< what was tried, in that order
   DiscoveryVerdict verdict = DiscoveryVerdict::kNoDiscrepancy;
   std::vector<FoundCause> causes;
-  std::vector<FoundKind> kinds;  ///< the most probable first
+  std::vector<FoundKind> kinds;  ///< the most probable first, certain ones by share
   /// Share of the force that was missing which is left, rms along data that no fit saw;
   /// none: no more than noise is left, or nothing was found.
   std::optional<double> force_left;

@@ -335,7 +335,9 @@ inline constexpr auto kFields<Discovery> = std::tuple{
                "where noise is all there is.",
                &Discovery::force_left),
     Everywhere("kinds", "",
-               "The kinds of physics that are wrong, the most probable first.",
+               "The kinds of physics that are wrong, the most probable first, and of "
+               "those that "
+               "are all but certain the one first that matters most.",
                &Discovery::kinds),
     Everywhere("causes", "", "What the plant lacks, and faults.", &Discovery::causes),
     InJson("explanations", "",

@@ -92,5 +92,25 @@ TEST(UnseenJudgement, FindsNothingWhereNothingIsHidden) {
   EXPECT_EQ(judged.Verdict(), DiscoveryVerdict::kNoDiscrepancy);
 }
 
+// Behind what it leaves a model may be likelier and yet lack more than the machine as given.
+TEST(MissingShare, IsWorseWhereMoreIsMissingThanBesideTheMachineAsGiven) {
+  EXPECT_TRUE((MissingShare{1.2, true, true}.IsWorse()));
+  EXPECT_FALSE((MissingShare{0.9, true, true}.IsWorse()));
+  EXPECT_FALSE((MissingShare{1.2, true, false}.IsWorse())) << "noise explains it";
+}
+
+TEST(LeaveNothing, GivesTheMachineAsGivenForAnAnswerAndSaysWhatWasRefuted) {
+  Judged one({kDamper}, {kDamper});
+  ASSERT_THAT(one.NamesOf(one.judgement.answer.fit.model), Not(IsEmpty()));
+  LeaveNothing(one.explained.blocks, "why", 1.2, one.judgement);
+  EXPECT_THAT(one.NamesOf(one.judgement.answer.fit.model), IsEmpty());
+  EXPECT_EQ(one.judgement.answer.unseen_deviance,
+            one.judgement.nothing.unseen_deviance);
+  EXPECT_THAT(one.judgement.losses, IsEmpty());
+  EXPECT_THAT(one.judgement.refuted,
+              Contains(::testing::HasSubstr("viscous_friction@elbow")));
+  EXPECT_EQ(one.judgement.decisions.back().why, "why");
+}
+
 }  // namespace
 }  // namespace mjdiag
