@@ -216,6 +216,8 @@ void ApplyEffect(mjModel& model, const PlacedEffect& placed) {
 
 std::string SiteUnit(const mjModel& model, const Effect& effect,
                      const std::string& site, const EffectParameter& parameter) {
+  // A factor, and of elements that may be several.
+  if (effect.IsFault()) return parameter.unit;
   if (effect.element() == mjOBJ_ACTUATOR && parameter.role == Role::kLimit) {
     // The command itself where a unit of it is a unit of force.
     const int motor = FindElement(model, mjOBJ_ACTUATOR, site);

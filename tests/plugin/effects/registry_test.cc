@@ -13,6 +13,7 @@
 #include <map>
 #include <regex>
 
+#include "mjdiag/plugin/effects/fault_effect.h"
 #include "mjdiag/plugin/effects/placed_effect.h"
 #include "mjdiag/plugin/runtime/simulation.h"
 #include "mjdiag/signals/error.h"
@@ -233,6 +234,18 @@ TEST_F(CheckedEffect, HasUnitsOfAMomentAtAHinge) {
   EXPECT_EQ(unit("Z", "amplitude"), "N m");
   EXPECT_EQ(unit("Z", "period"), "rad");
   EXPECT_EQ(unit("Z", "phase"), "rad");
+}
+
+// beta_y of the bonder is the stiffness of two joints at once: there is none of that name.
+TEST_F(CheckedEffect, OfAFaultOfSeveralJointsHasTheUnitOfAFactor) {
+  int several = 0;
+  for (const PlacedEffect& fault : FaultEffects(*plant_)) {
+    several += fault.site.find(' ') != std::string::npos ? 1 : 0;
+    EXPECT_EQ(
+        SiteUnit(*plant_, *fault.effect, fault.site, fault.effect->parameters()[0]),
+        "1");
+  }
+  EXPECT_GT(several, 0);
 }
 
 // The control callback may not allocate; all effects at once, a hundred physics steps.
