@@ -86,15 +86,6 @@ TEST(Explain, SaysHowWellValuesAreKnownBehindTheNoiseOfItsAnswer) {
   }
 }
 
-// Values that are off look like other physics steps, and steps once taken hold values where they
-// are: both are asked at once.
-TEST(Explain, TakesTheStepsOfTheModelForItsOwnWhereAMotorIsFarOff) {
-  const Explained found = ExplainedFor({"motor_constant@motor1:factor=0.7"}, 2);
-  EXPECT_TRUE(found.steps.AreGiven()) << found.steps.without;
-  EXPECT_THAT(NamesOf(found), ElementsAre("gear@motor1"));
-  ExpectValue(found, "gear@motor1", 0.7, 1e-3);
-}
-
 /// Six records, which are looked at once in some ticks first; of a simulation with the physics steps of
 /// the model, of which six records would tell more than of a damper.
 MeasuredRun LongRun(const test::Arm& arm, const std::string& lacking) {

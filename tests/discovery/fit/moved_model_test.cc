@@ -69,7 +69,7 @@ TEST(MovedModel, TakesFormsOfFrictionFromAnotherModelOfTheSameJoint) {
   const Model same_joint = InFormsOf(blocks, model, {{3, size}});
   ASSERT_EQ(same_joint.size(), 2u);
   EXPECT_EQ(same_joint[0].block, 0u);
-  EXPECT_EQ(same_joint[1].block, 3u);
+  ASSERT_EQ(same_joint[1].block, 3u);
   EXPECT_EQ(same_joint[1].values, size);
   EXPECT_EQ(InFormsOf(blocks, model, {{4, size}})[1].block, 2u);
 }
