@@ -228,9 +228,10 @@ void AddMembers(const AnswerData& data, const UnseenJudgement& judged,
   }
   // What is certain by what it is worth: nobody tells 99.95 % from 99.99 %.
   constexpr double kCertain = 0.999;
-  std::ranges::stable_sort(discovery.kinds, std::greater<>(), [&](const FoundKind& one) {
-    return std::pair(std::min(one.probability, kCertain), one.share);
-  });
+  std::ranges::stable_sort(
+      discovery.kinds, std::greater<>(), [&](const FoundKind& one) {
+        return std::pair(std::min(one.probability, kCertain), one.share);
+      });
 }
 
 }  // namespace mjdiag
