@@ -335,9 +335,8 @@ inline constexpr auto kFields<Discovery> = std::tuple{
                "where noise is all there is.",
                &Discovery::force_left),
     Everywhere("kinds", "",
-               "The kinds of physics that are wrong, the most probable first, and of "
-               "those that "
-               "are all but certain the one first that matters most.",
+               "The kinds of physics that are wrong, the most probable first; of those "
+               "that are all but certain the one that matters most.",
                &Discovery::kinds),
     Everywhere("causes", "", "What the plant lacks, and faults.", &Discovery::causes),
     InJson("explanations", "",

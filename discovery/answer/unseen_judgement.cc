@@ -42,7 +42,7 @@ bool MemberLoss::IsRefuted() const { return unseen < -kLeastGain || Total() < 0.
 
 void LeaveNothing(const std::vector<Block>& blocks, const std::string& why, double loss,
                   UnseenJudgement& judged) {
-  const Model model = judged.answer.fit.model;
+  const Model& model = judged.answer.fit.model;
   judged.decisions.push_back({ModelText(blocks, model), loss, why});
   for (const Member& member : model) {
     judged.refuted.push_back(ModelText(blocks, {member}));

@@ -162,8 +162,8 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
     const VectorXd spread = candidate.effect->Spread(own);
     Index place = 0;
     const VectorXd q = at.q();
-    const double stroke =
-        candidate.effect->site() == SiteKind::kSensor ? Range(at.y()) : own.stroke;
+    const bool reads = candidate.effect->site() == SiteKind::kSensor;
+    const double stroke = reads ? Range(at.y()) : own.stroke;
     const Index wave = PeriodPlace(candidate);
     for (FitParameter& parameter : candidate.parameters) {
       const double expected = spread[place++];
@@ -202,9 +202,7 @@ void BoundByRecord(std::vector<Candidate>& candidates, const Machine& machine,
       parameter.extent = motion.time.maxCoeff();
       if (parameter.role != Role::kPeriod) continue;
       parameter.extent = stroke;
-      const Ways ways =
-          WaysOf(candidate.effect->site() == SiteKind::kSensor ? VectorXd(at.y()) : q,
-                 motion.time);
+      const Ways ways = WaysOf(reads ? VectorXd(at.y()) : q, motion.time);
       parameter.unseen_from = ways.longest;
       parameter.unseen_to = 2.0 * ways.gap;
     }
