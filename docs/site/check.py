@@ -6,7 +6,7 @@
                                  has it, and it is there; so is every source that the texts
                                  name
     check.py folders             the table of docs/house.md has a row for every folder, and for
-                                 none that is not there
+                                 none that is not there; the site's index has every page
     check.py links <folder>      every link of the built site that stays inside leads
                                  somewhere, anchors included, and nothing is loaded from
                                  elsewhere
@@ -124,7 +124,7 @@ def folders_of(parent, ignored=()):
 
 
 def check_folders():
-    """Rows are the folders of the sources, of plugin/ those in it."""
+    """Rows are the folders of the sources, of plugin/ those in it; pages are in the index."""
     house = (ROOT / "docs/house.md").read_text(encoding="utf-8")
     rows = dict(re.findall(r"^\| `([\w/]+)/` \| (.*) \|$", house, re.MULTILINE))
     ignored = re.findall(r"^/(.+)/$", (ROOT / ".gitignore").read_text(encoding="utf-8"),
@@ -138,6 +138,9 @@ def check_folders():
         faults += [f"docs/house.md: no folder {name}/{room}/"
                    for room in re.findall(r"`(\w+)/`", text)
                    if not (ROOT / name / room).is_dir()]
+    index = (ROOT / "docs/site/index.md").read_text(encoding="utf-8").splitlines()
+    faults += [f"docs/site/index.md: no line /{page.stem}" for page in (ROOT / "docs").glob("*.md")
+               if f"/{page.stem}" not in index]
     print(f"{len(rows)} folders")
     return faults
 
