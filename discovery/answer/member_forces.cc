@@ -1,30 +1,12 @@
 #include "mjdiag/discovery/answer/member_forces.h"
 
-#include <cmath>
-
 #include "mjdiag/discovery/fit/tick_columns.h"
+#include "mjdiag/discovery/regression/negligible.h"
 #include "mjdiag/plugin/effects/effect.h"
 
 namespace mjdiag {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
-
-/// Of a column, rms at every joint, also where nothing is measured, for a mount acts there: what
-/// makes its changes of the velocities in a tick where nothing holds the machine.
-VectorXd SizesOf(const Column& column, const FilterPath& path, const MatrixXd& mass) {
-  const Index nv = mass.rows();
-  MatrixXd changes = MatrixXd::Zero(nv, path.samples());
-  for (const auto& [state, signal] : column.states) {
-    if (state >= nv && state < 2 * nv) changes.row(state - nv) = signal.transpose();
-  }
-  const VectorXd rms = (mass * changes).rowwise().norm() /
-                       std::sqrt(static_cast<double>(path.samples()));
-  return rms / path.sample_time;
-}
 
 bool ActsOnReadings(const Block& block) {
   return block.candidate && block.candidate->effect->site() == SiteKind::kSensor;
@@ -33,7 +15,6 @@ bool ActsOnReadings(const Block& block) {
 }  // namespace
 
 std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& answer) {
-  constexpr double kHundredth = 0.01;
   const Model& model = answer.fit.model;
   const FilterPath& path = answer.seen;
   const Machine machine = data.With(model);
@@ -42,14 +23,18 @@ std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& ans
     others.push_back({data.With(Without(model, m))});
   }
   others.push_back({data.With({})});
+  AnswerData other = data;
+  other.steps = data.steps.Other();
+  others.push_back({other.With(model)});
   const std::vector<Column> columns = TickColumns(machine, data.run.seen, path, others);
-  const MatrixXd& mass = machine.mechanics().M;
-  const VectorXd least = kHundredth * SizesOf(columns.back(), path, mass);
+  const Column* steps = data.steps.without > 0.0 ? &columns.back() : nullptr;
+  const Negligible negligible(data.machine, path, data.reading_sd,
+                              {{1.0, &columns[model.size()]}}, steps);
   std::vector<bool> idle(model.size(), false);
   for (std::size_t m = 0; m < model.size(); ++m) {
-    if (ActsOnReadings(data.blocks[model[m].block])) continue;
-    const VectorXd size = SizesOf(columns[m], path, mass);
-    idle[m] = (size.array() <= least.array()).all();
+    const std::vector<ScaledColumn> member{{1.0, &columns[m]}};
+    idle[m] = ActsOnReadings(data.blocks[model[m].block]) ? negligible.IsError(member)
+                                                          : negligible.IsForce(member);
   }
   return idle;
 }

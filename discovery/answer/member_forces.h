@@ -1,10 +1,7 @@
 #pragma once
-// How large the force of every member of a model is, along the motion: what the machine does
-// otherwise without it in every tick, as forces at the joints. One that is no more at any
-// joint than a hundredth of what all of them do there is nothing that anybody would miss,
-// however surely many samples tell it.
+// Which members of an answer do so little at every joint that nobody would miss them
+// (negligible.h): by what the machine does otherwise without each in every tick.
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "mjdiag/discovery/answer/answer_data.h"
@@ -12,7 +9,7 @@
 
 namespace mjdiag {
 
-/// Of every member; false of errors of readings, which are no forces.
+/// Of every member.
 std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& answer);
 
 }  // namespace mjdiag

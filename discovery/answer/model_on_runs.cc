@@ -48,7 +48,7 @@ void Refit(const AnswerData& data, const Model& model, const FilterPath& path,
   constexpr int kIterations = 4;
   one.fit =
       FitModel(InTime([&](const Model& other) { return data.With(other); }, is_over),
-               data.run.seen, path, KeepGains(path), data.blocks, model, kIterations);
+               data.run.seen, path, KeepGains(path), data.blocks, model, {kIterations});
   one.seen = RunForceFilter(data.With(one.fit.model), data.run.seen, path.dofs,
                             path.starts, path.noise);
 }

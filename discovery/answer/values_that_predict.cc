@@ -75,7 +75,7 @@ std::optional<BetterValues> WithValuesThatPredict(
     other.fit =
         FitModel(InTime([&](const Model& model) { return data.With(model); }, is_over),
                  data.run.seen, answer.seen, gains, data.blocks, answer.fit.model,
-                 kIterations, FittedValues::kSizes);
+                 {kIterations}, FittedValues::kSizes);
     for (const Member& member : other.fit.model) {
       if (!IsAllowed(data.blocks[member.block], member.values)) return std::nullopt;
     }

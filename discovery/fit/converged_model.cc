@@ -158,13 +158,14 @@ class Settling {
   ///                member does, and lasts, does it as well
   bool Refit(const FilterNoise& noise, bool prunes) {
     constexpr int kFitIterations = 4;
+    constexpr double kPart = 0.1;
     const FilterNoise of_path = settled_.path.noise;
     const KeptGains gains =
         KeepGains(settled_.path, noise, OverdispersionAlong(settled_.path));
     const MachineWith in_time = InTime(beside_.machine_with, beside_.is_over);
     const FitOf fitted = [&](const Model& start) {
       return FitModel(in_time, beside_.run, settled_.path, gains, beside_.blocks, start,
-                      kFitIterations);
+                      {kFitIterations, kPart * LeastGain()});
     };
     ModelFit next = fitted(settled_.fit.model);
     if (prunes) next = Pruned(beside_.blocks, std::move(next), fitted);

@@ -157,9 +157,7 @@ class Fitting {
     }
   }
 
-  VectorXd From(VectorXd x, int iterations) {
-    // A step that promises less is not tried: it is a tenth of what counts (kLeastGain).
-    constexpr double kEnd = 0.1;
+  VectorXd From(VectorXd x, const FitEffort& effort) {
     // A step takes one run, slopes as many as there are coordinates: these hold as long as steps
     // gain what they say.
     constexpr int kTries = 3;
@@ -169,13 +167,14 @@ class Fitting {
     Near near = NearTo(x);
     double damping = 0.0;
     int taken = 0;
-    for (int i = 0; i < kTries * iterations; ++i) {
+    int steps = 0;
+    for (int i = 0; i < kTries * effort.iterations; ++i) {
       MatrixXd damped = near.bend;
       damped.diagonal() *= 1.0 + damping;
       const VectorXd s = LeastWithin(damped, near.slope, lower_ - x, upper_ - x);
       const double along = 2.0 * near.slope.dot(s);
       const double hoped = -along - s.dot(near.bend * s);
-      if (!(hoped > kEnd)) break;
+      if (!(hoped > effort.end)) break;
       const double there = CostOf(x + s);
       if (there < here) {
         if (std::abs(here - there - hoped) > kTold * hoped) {
@@ -185,7 +184,8 @@ class Fitting {
         x += s;
         here = there;
         damping *= 0.1;
-        if (taken == iterations) break;
+        const bool is_hopeless = ++steps >= kTries && here > effort.hopeless;
+        if (is_hopeless || taken == effort.iterations) break;
         near = NearTo(x);
         continue;
       }
@@ -250,15 +250,15 @@ MachineWith InTime(MachineWith machine_with, std::function<bool()> is_over) {
 
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks, const Model& start, int iterations,
-                  FittedValues fitted) {
+                  const std::vector<Block>& blocks, const Model& start,
+                  FitEffort effort, FittedValues fitted) {
   const std::vector<Coordinate> coordinates = CoordinatesOf(blocks, start);
   const MatrixXd R = WhiteningOf(blocks, start, coordinates);
   Innovations innovations(machine_with, run, path, gains, start, coordinates);
   VectorXd x = Place(coordinates, start);
   innovations.Of(x);
-  if (x.size() > 0 && iterations > 0) {
-    x = Fitting(innovations, R, x, fitted).From(x, iterations);
+  if (x.size() > 0 && effort.iterations > 0) {
+    x = Fitting(innovations, R, x, fitted).From(x, effort);
   }
   ModelFit fit;
   fit.model = At(coordinates, start, x);

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "mjdiag/discovery/blocks/block.h"
@@ -41,11 +42,21 @@ enum class FittedValues {
   kSizes  ///< how large laws and numbers are; what shapes laws stays
 };
 
+/// When a fit ends.
+struct FitEffort {
+  int iterations = 0;  ///< slopes that are taken anew at most; 0: the values stay
+  /// A step that promises less, in -2 ln, is not tried: a tenth of what counts (kLeastGain), and
+  /// more of models that are only compared.
+  double end = 0.1;
+  /// What leaves more than this after three steps is not the model.
+  double hopeless = std::numeric_limits<double>::infinity();
+};
+
 /// NumericalError where the run with the first values diverges; InputError where the plant
 /// cannot be so.
 ModelFit FitModel(const MachineWith& machine_with, const MeasuredRun& run,
                   const FilterPath& path, const KeptGains& gains,
-                  const std::vector<Block>& blocks, const Model& start, int iterations,
-                  FittedValues fitted = FittedValues::kAll);
+                  const std::vector<Block>& blocks, const Model& start,
+                  FitEffort effort, FittedValues fitted = FittedValues::kAll);
 
 }  // namespace mjdiag

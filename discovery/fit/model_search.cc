@@ -116,7 +116,7 @@ void ModelSearch::AskRunnersUp(std::vector<Model> runners_up) {
     if (HaveSameBlocks(model, one) || HaveSameBlocks(model, found_.fit.model)) continue;
     try {
       fits.push_back(FitModel([&](const Model& of) { return With(of); }, run_,
-                              found_.path, gains, found_.blocks, model, 0));
+                              found_.path, gains, found_.blocks, model, {}));
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }

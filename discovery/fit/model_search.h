@@ -64,11 +64,11 @@ class ModelSearch {
   /// Behind which of the whitenings, and whether with other steps.
   using Judged = std::pair<std::size_t, bool>;
   ModelFit Fitted(const Model& model, const Whitenings& whitenings,
-                  const Judged& judged, int iterations) const;
+                  const Judged& judged, FitEffort effort) const;
   /// The model as it is, fitted behind gains that moves are compared behind.
   using AsFitted = std::map<Judged, ModelFit>;
   const ModelFit& IncumbentBehind(const Judged& judged, const Whitenings& whitenings,
-                                  AsFitted& known) const;
+                                  const Moves& moves, AsFitted& known) const;
   /// The best of some moves, fitted; none if none pays.
   /// @param iterations     of a fit; 0: at the values of the regression
   /// @param beside_itself  where there are none: beside the model as it is, behind its noise
@@ -84,6 +84,8 @@ class ModelSearch {
     std::map<bool, Moves> moves;  ///< at the simplest shapes, and at every
   };
   Standing& StandingNow();
+  /// Whether nobody would miss what it adds (negligible.h).
+  bool IsIdle(const ModelMove& move);
   const Moves& MovesNow(Standing& standing);
   struct StepsBehind {
     PhysicsSteps steps;

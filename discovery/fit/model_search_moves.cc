@@ -16,6 +16,7 @@
 #include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/negligible.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -27,10 +28,18 @@ namespace {
 // Of fits behind the gains of another model, which the best are fitted anew behind their own: as
 // many as two laws take that say nearly the same, of which one leaves.
 constexpr int kIterations = 6;
+// Kept gains tell what is gained to a factor of two: a fit need not tell it to a hundredth.
+constexpr double kLittle = 0.02;
 // What loses so many times what first order promised is what that knows nothing of.
 constexpr double kNonsense = 10.0;
 // From there a fit goes the same way.
 constexpr double kAsNear = 1e-3;
+
+FitEffort EffortFor(const Moves& moves, int iterations) {
+  const double promised =
+      moves.best.empty() ? 0.0 : moves.score - moves.best.front().score;
+  return {iterations, std::max(FitEffort().end, kLittle * promised)};
+}
 
 }  // namespace
 
@@ -83,7 +92,7 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
   if (IsForAll(moves)) return std::nullopt;
   const Whitenings& whitenings = standing.whitenings;
   const ModelFit& own =
-      IncumbentBehind({moves.noise, false}, whitenings, standing.as_fitted);
+      IncumbentBehind({moves.noise, false}, whitenings, moves, standing.as_fitted);
   if (auto settled = ConvergedAnew(whitenings, moves, own)) {
     return Proposal{std::move(*settled), steps_, found_.input_width, run_};
   }
@@ -92,21 +101,41 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
   return BestOf(moves, 4, kIterations, whitenings, standing.as_fitted, false);
 }
 
+bool ModelSearch::IsIdle(const ModelMove& move) {
+  if (move.added.empty()) return false;
+  std::vector<ScaledColumn> columns;
+  for (const Added& added : move.added) {
+    const std::vector<Column>& of_one = added.variation.columns;
+    for (std::size_t i = 0; i < of_one.size(); ++i) {
+      columns.emplace_back(added.amplitudes[static_cast<Eigen::Index>(i)], &of_one[i]);
+    }
+  }
+  const Standing& standing = StandingNow();
+  std::vector<ScaledColumn> members;
+  for (const Term& term : standing.exact.terms)
+    members.emplace_back(1.0, &term.removed);
+  const Column* steps = steps_.without > 0.0 ? &standing.exact.other_steps : nullptr;
+  const Negligible negligible(machine_, found_.path, reading_sd_, members, steps);
+  return negligible.IsForce(columns) && negligible.IsError(columns);
+}
+
 ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
-                             const Judged& judged, int iterations) const {
+                             const Judged& judged, FitEffort effort) const {
   const PhysicsSteps steps = judged.second ? steps_.Other() : steps_;
   return FitModel(InTime([&](const Model& one) { return With(one, steps); },
                          [this] { return IsOver(); }),
                   run_, found_.path, whitenings.behind[judged.first].gains(),
-                  found_.blocks, model, iterations);
+                  found_.blocks, model, effort);
 }
 
 const ModelFit& ModelSearch::IncumbentBehind(const Judged& judged,
                                              const Whitenings& whitenings,
+                                             const Moves& moves,
                                              AsFitted& known) const {
   const auto found = known.find(judged);
   if (found != known.end()) return found->second;
-  ModelFit fit = Fitted(found_.fit.model, whitenings, judged, kIterations);
+  ModelFit fit =
+      Fitted(found_.fit.model, whitenings, judged, EffortFor(moves, kIterations));
   return known.emplace(judged, std::move(fit)).first->second;
 }
 
@@ -123,8 +152,10 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   };
   const std::size_t noises = whitenings.behind.size();
   std::vector<Attempt> attempts;
+  const FitEffort effort = EffortFor(moves, iterations);
   const auto may_be = [&](const ModelMove& move) {
-    return MayBe(move) && !PromisesNothing(move, moves.score - move.score);
+    return MayBe(move) && !PromisesNothing(move, moves.score - move.score) &&
+           !IsIdle(move);
   };
   for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
     const Model model = After(*move, found_.fit.model);
@@ -153,7 +184,10 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     Attempt& one = attempts[static_cast<std::size_t>(number)];
     if (IsOver()) return;
     const auto fitted = [&](const Model& model) {
-      return Fitted(model, whitenings, one.JudgedBehind(noises), iterations);
+      const Judged judged = one.JudgedBehind(noises);
+      FitEffort of_move = effort;
+      of_move.hopeless = whitenings.behind[judged.first].left().squaredNorm();
+      return Fitted(model, whitenings, judged, of_move);
     };
     try {
       ModelFit fit = fitted(one.model);
@@ -176,7 +210,8 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
     double gain = moves.score - one.move->score;
     if (iterations > 0) {
       try {
-        gain = IncumbentBehind(judged, whitenings, as_it_is).score() - fit.score();
+        gain =
+            IncumbentBehind(judged, whitenings, moves, as_it_is).score() - fit.score();
       } catch (const NumericalError&) {
         continue;
       }
@@ -199,11 +234,11 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
                   -gain);
     Say(text + ModelText(found_.blocks, fit.model));
     Rate(one.model, -gain);
-    const double promised = moves.score - one.move->score;
-    if (iterations > 0 && -gain > kNonsense * promised && one.move->removed.empty() &&
+    const double hoped = moves.score - one.move->score;
+    if (iterations > 0 && -gain > kNonsense * hoped && one.move->removed.empty() &&
         one.move->added.size() == 1) {
       double& off = off_by_[one.move->added.front().variation.block];
-      off = std::max(off, promised - gain);
+      off = std::max(off, hoped - gain);
     }
     if (gain < kLeastGain) {
       Decide(fit.model, -gain, "fitted, it is worth less than it costs");

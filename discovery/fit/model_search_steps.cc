@@ -118,6 +118,11 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   if (kFiner * seconds_of_run_ > kShareOfTime * (seconds_ - time_.Seconds())) {
     return false;
   }
+  // What is large is not of second order.
+  constexpr double kLittle = 0.1;  // of what all did
+  const bool is_little =
+      found_.score - beat < kLittle * (found_.nothing.deviance - found_.score);
+  if (!found_.fit.model.empty() && !is_little) return false;
   // Of steps as long as those of the run nothing is left to take away.
   const double own = 1.0 - steps_.without;
   const PhysicsSteps finer{std::max(0.0, 1.0 - kFiner * own), kFiner * steps_.finer};
@@ -128,11 +133,8 @@ bool ModelSearch::ChooseFinerSteps(double beat) {
   } catch (const NumericalError&) {
     return false;
   }
-  // Values that make up for steps hide them: where little is gained otherwise they are fitted anew.
-  constexpr double kLittle = 0.1;  // of what all did
-  const bool is_little =
-      found_.score - beat < kLittle * (found_.nothing.deviance - found_.score);
-  const bool may_hide = is_little && !found_.fit.model.empty();
+  // Values that make up for steps hide them: they are fitted anew.
+  const bool may_hide = !found_.fit.model.empty();
   if (!may_hide && found_.path.deviance - path.deviance < kLeastGain) return false;
   ConvergedModel settled = SettleNear(Beside(finer), found_.fit, std::move(path));
   if (settled.score() > beat) return false;

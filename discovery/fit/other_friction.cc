@@ -73,7 +73,7 @@ std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
   for (const Member& member : model) price += beside.blocks[member.block].price;
   if (path.deviance + price > found.score() - kLeastGain) return std::nullopt;
   ModelFit fit = FitModel(beside.machine_with, beside.run, path, KeepGains(path),
-                          beside.blocks, model, 0);
+                          beside.blocks, model, {});
   ConvergedModel one{std::move(fit), std::move(path)};
   if (one.score() > found.score() - kLeastGain) return std::nullopt;
   return one;
@@ -105,7 +105,7 @@ std::optional<ConvergedModel> BestFitted(const ConvergedBeside& beside,
   for (const Model& form : forms) {
     try {
       fits.push_back(FitModel(beside.machine_with, beside.run, found.path, gains,
-                              beside.blocks, form, 0));
+                              beside.blocks, form, {}));
     } catch (const NumericalError&) {
     } catch (const InputError&) {
     }

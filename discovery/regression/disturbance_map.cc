@@ -70,15 +70,14 @@ std::vector<MatrixXd> ForcesOfChanges(const FilterPath& path) {
   return forces;
 }
 
-/// What positions are off by where readings are, behind their noises.
+}  // namespace
+
 MatrixXd PositionOfReadings(const FilterPath& path) {
   const TickTangent& tangent = path.tangents.front();
   const VectorXd weight = path.noise.reading.cwiseInverse();
   const MatrixXd C = weight.asDiagonal() * tangent.C.leftCols(tangent.B.cols());
   return PseudoInverse(C) * weight.asDiagonal();
 }
-
-}  // namespace
 
 DisturbanceRows::DisturbanceRows(const FilterPath& of, const MatrixXd& forces)
     : path(of) {

@@ -21,6 +21,9 @@
 
 namespace mjdiag {
 
+/// Positions that readings tell, C^+ behind their noises, nv x ny.
+Eigen::MatrixXd PositionOfReadings(const FilterPath& path);
+
 /// What all maps of a path share: they differ in how large the rest is.
 struct DisturbanceRows {
   struct Window {
@@ -38,8 +41,7 @@ struct DisturbanceRows {
   Eigen::VectorXd missing;
   /// Of every tangent, latent forces that do a change of the state in a tick, nf x ns.
   std::vector<Eigen::MatrixXd> force_of_change;
-  /// Positions that readings tell, C^+ behind their noises, nv x ny.
-  Eigen::MatrixXd position_of_readings;
+  Eigen::MatrixXd position_of_readings;  ///< PositionOfReadings
 };
 
 class DisturbanceMap final : public RowMap {

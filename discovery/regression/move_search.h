@@ -15,6 +15,7 @@
 #include "mjdiag/discovery/blocks/path_motion.h"
 #include "mjdiag/discovery/regression/fold_gram.h"
 #include "mjdiag/discovery/regression/moves.h"
+#include "mjdiag/discovery/regression/promising.h"
 
 namespace mjdiag {
 
@@ -71,8 +72,8 @@ class MoveSearch {
   std::vector<std::vector<std::size_t>> LeavingTogether() const;
   std::vector<Variation> Promising(const Scored& here) const;
   /// Behind one of the noises.
-  /// @param least  what they have to gain there, beside their prices
-  std::vector<Variation> PromisingBehind(std::size_t noise, double least) const;
+  /// @param least  what variations have to gain there, beside their prices
+  WhitenedModels ModelsBehind(std::size_t noise, double least) const;
   /// What comes in with its amplitudes, the last first.
   /// @param amplitudes  of all columns, those of what comes in last
   std::vector<std::pair<const Variation&, Eigen::VectorXd>> AddedOf(

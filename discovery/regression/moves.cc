@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "mjdiag/discovery/regression/move_search.h"
-#include "mjdiag/discovery/regression/promising.h"
 
 namespace mjdiag {
 
@@ -67,22 +66,28 @@ std::vector<std::vector<std::size_t>> MoveSearch::LeavingTogether() const {
 // what would make them needless is seen behind smaller ones.
 std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
   constexpr std::size_t kSmaller = 2;  // of NoisesFrom
-  std::vector<Variation> kept = PromisingBehind(here.noise, 0.0);
+  std::vector<WhitenedModels> behind{ModelsBehind(here.noise, 0.0)};
   const std::size_t smaller = here.noise + kSmaller;
-  if (looked_.at_forces || smaller >= grams_.size()) return kept;
-  const double lost = FitSet(grams_[smaller], ColumnsOf({})).unseen -
-                      FitSet(grams_[here.noise], ColumnsOf({})).unseen;
-  for (Variation& one : PromisingBehind(smaller, lost)) {
-    const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
-      return other.block == one.block && other.shape == one.shape;
-    });
-    if (!is_known) kept.push_back(std::move(one));
+  if (!looked_.at_forces && smaller < grams_.size()) {
+    const double lost = FitSet(grams_[smaller], ColumnsOf({})).unseen -
+                        FitSet(grams_[here.noise], ColumnsOf({})).unseen;
+    behind.push_back(ModelsBehind(smaller, lost));
+  }
+  std::vector<Variation> kept;
+  for (std::vector<Variation>& of_noise :
+       PromisingVariations(machine_, along_, behind, blocks_,
+                           [this](const Block& block) { return MayCome(block); })) {
+    for (Variation& one : of_noise) {
+      const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
+        return other.block == one.block && other.shape == one.shape;
+      });
+      if (!is_known) kept.push_back(std::move(one));
+    }
   }
   return kept;
 }
 
-std::vector<Variation> MoveSearch::PromisingBehind(std::size_t noise,
-                                                   double least) const {
+WhitenedModels MoveSearch::ModelsBehind(std::size_t noise, double least) const {
   const RowMap& map = *maps_[noise];
   const SetOfColumns set = ColumnsOf({});
   const SetFit fit = FitSet(grams_[noise], set);
@@ -120,8 +125,7 @@ std::vector<Variation> MoveSearch::PromisingBehind(std::size_t noise,
   for (const std::vector<std::size_t>& removed : LeavingTogether()) {
     models.push_back(model_without(removed));
   }
-  return PromisingVariations(machine_, along_, map, W, set.sd, models, least, blocks_,
-                             [this](const Block& block) { return MayCome(block); });
+  return {map, W, set.sd, std::move(models), least};
 }
 
 void MoveSearch::Extend(Scored& best, double share,

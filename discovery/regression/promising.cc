@@ -26,8 +26,8 @@ constexpr double kUncertain = 1.5;  // times what a gain may be by that
 constexpr std::size_t kOfBlock = 3;
 // Of a group, which are alike.
 constexpr std::size_t kOfGroup = 4;
-// That could be in the place of a member.
-constexpr std::size_t kInPlace = 6;
+// Blocks that could be in the place of a member, each in its best shape: a fit finds others.
+constexpr std::size_t kInPlace = 8;
 
 MatrixXd WhiteNoise(Index rows, Index columns) {
   std::mt19937_64 generator(1);
@@ -159,38 +159,125 @@ class BestOfBlock {
   std::vector<Promise> best;
 };
 
+/// What blocks promise beside the models behind one noise.
+class PromisesBehind {
+ public:
+  PromisesBehind(const WhitenedModels& of, std::size_t blocks)
+      : of_(of),
+        products_(of.map, of.W, of.models),
+        promises_(blocks, std::vector<BestOfBlock>(of.models.size())) {
+    for (std::size_t i = 0; i < of.models.size(); ++i) {
+      beside_.emplace_back(of.models[i], static_cast<Index>(i), products_, of.sd);
+    }
+  }
+
+  void Ask(std::size_t block, const Variation& one) {
+    const MatrixXd of_one = products_.Of(one);
+    for (std::size_t i = 0; i < beside_.size(); ++i) {
+      const double gain = beside_[i].Gain(of_one);
+      BestOfBlock& best = promises_[block][i];
+      if (best.MayTake(gain)) best.Take(gain, one);
+    }
+  }
+
+  /// Of every period or frequency at once: the sine and the cosine times u.
+  /// @param of_shape  the wave of a step of the sweep
+  void AskWaves(std::size_t block, const ParameterScan& sweep, const Column& waves,
+                const VectorXd& sd, const std::pair<double, double>& bounds,
+                const std::function<Variation(Index)>& of_shape) {
+    Eigen::MatrixXcd sums(sweep.count, products_.u.cols());
+    for (Index j = 0; j < sums.cols(); ++j) {
+      sums.col(j) =
+          WaveSums(products_.transposed[static_cast<std::size_t>(j)].Along(waves),
+                   sweep.angle, sweep.increment, sweep.count);
+    }
+    const auto count = std::ssize(beside_);
+    MatrixXd all_gains = MatrixXd::Zero(sweep.count, count);
+    for (Index m = 0; m < sweep.count; ++m) {
+      const double value = sweep.value(m);
+      if (value < bounds.first || value > bounds.second) continue;
+      MatrixXd of_wave(sums.cols(), 2);
+      of_wave.col(0) = sd[0] * sums.row(m).imag().transpose();
+      of_wave.col(1) = sd[1] * sums.row(m).real().transpose();
+      for (Index i = 0; i < count; ++i) {
+        all_gains(m, i) = beside_[static_cast<std::size_t>(i)].Gain(of_wave);
+      }
+    }
+    for (Index i = 0; i < count; ++i) {
+      BestOfBlock& best = promises_[block][static_cast<std::size_t>(i)];
+      const auto gains = all_gains.col(i);
+      for (Index m = 0; m < gains.size(); ++m) {
+        const double before = m > 0 ? gains[m - 1] : 0.0;
+        const double after = m + 1 < gains.size() ? gains[m + 1] : 0.0;
+        if (gains[m] <= before || gains[m] < after) continue;
+        if (best.MayTake(gains[m])) best.Take(gains[m], of_shape(m));
+      }
+    }
+  }
+
+  /// The most promising.
+  std::vector<Variation> Kept(const std::vector<Block>& blocks) {
+    std::vector<Variation> kept;
+    for (std::size_t i = 0; i < beside_.size(); ++i) {
+      std::map<std::string, std::size_t> of_group;
+      std::size_t in_place = 0;
+      for (Promise& one : Sorted(i, blocks)) {
+        const std::string& group = blocks[one.variation.block].group;
+        if (!group.empty() && ++of_group[group] > kOfGroup) continue;
+        if (i > 0 && ++in_place > kInPlace) break;
+        const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
+          return other.block == one.variation.block &&
+                 other.shape == one.variation.shape;
+        });
+        if (!is_known) kept.push_back(std::move(one.variation));
+      }
+    }
+    return kept;
+  }
+
+ private:
+  /// Beside one model.
+  std::vector<Promise> Sorted(std::size_t model, const std::vector<Block>& blocks) {
+    std::vector<Promise> all;
+    for (std::size_t place = 0; place < promises_.size(); ++place) {
+      std::vector<Promise>& of_block = promises_[place][model].best;
+      if (model > 0 && of_block.size() > 1) of_block.resize(1);
+      const double least = std::max(0.5 * blocks[place].price, beside_[model].least());
+      for (Promise& one : of_block) {
+        if (one.gain > least && kUncertain * one.gain > of_.least) {
+          all.push_back(std::move(one));
+        }
+      }
+    }
+    std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);
+    return all;
+  }
+
+  const WhitenedModels& of_;
+  Products products_;
+  std::vector<PromiseBeside> beside_;
+  std::vector<std::vector<BestOfBlock>> promises_;  // by block and model
+};
+
 }  // namespace
 
-std::vector<Variation> PromisingVariations(
-    const Machine& machine, const BlockMotion& along, const RowMap& map,
-    const MatrixXd& W, const VectorXd& sd, const std::vector<WhitenedModel>& models,
-    double least, std::vector<Block>& blocks,
+std::vector<std::vector<Variation>> PromisingVariations(
+    const Machine& machine, const BlockMotion& along,
+    const std::vector<WhitenedModels>& behind, std::vector<Block>& blocks,
     const std::function<bool(const Block&)>& may_come) {
-  const Products products(map, W, models);
-  std::vector<PromiseBeside> beside;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    beside.emplace_back(models[i], static_cast<Index>(i), products, sd);
-  }
-  // By block and model.
-  std::vector<std::vector<BestOfBlock>> promises(
-      blocks.size(), std::vector<BestOfBlock>(models.size()));
+  std::vector<PromisesBehind> promises;
+  for (const WhitenedModels& one : behind) promises.emplace_back(one, blocks.size());
   ParallelFor(static_cast<int>(blocks.size()), [&](int number) {
     const auto place = static_cast<std::size_t>(number);
-    std::vector<BestOfBlock>& best = promises[place];
     Block& block = blocks[place];
     if (!may_come(block)) return;
     const std::optional<ParameterScan> sweep = ParameterScanOf(machine, along, block);
     if (!sweep) {
       ForEachVariation(machine, along, place, block, [&](Variation&& one) {
-        const MatrixXd of_one = products.Of(one);
-        for (std::size_t i = 0; i < models.size(); ++i) {
-          const double gain = beside[i].Gain(of_one);
-          if (best[i].MayTake(gain)) best[i].Take(gain, one);
-        }
+        for (PromisesBehind& of_noise : promises) of_noise.Ask(place, one);
       });
       return;
     }
-    const auto [lowest, highest] = BoundsOf(block);
     const BlockScales scales = ScalesOf(machine, along, block);
     const auto of_shape = [&](Index m) {
       return VariationOf(place, block, scales, sweep->make(sweep->value(m)),
@@ -199,58 +286,13 @@ std::vector<Variation> PromisingVariations(
     const Variation first = of_shape(0);
     block.price = PriceOf(block, sweep->count);
     if (first.columns.empty()) return;
-    // Of every period at once: the sine and the cosine times u.
-    Eigen::MatrixXcd sums(sweep->count, products.u.cols());
-    for (Index j = 0; j < sums.cols(); ++j) {
-      sums.col(j) = WaveSums(products.transposed[static_cast<std::size_t>(j)].Along(
-                                 WavesOf(*sweep, block)),
-                             sweep->angle, sweep->increment, sweep->count);
-    }
-    MatrixXd all_gains = MatrixXd::Zero(sweep->count, std::ssize(models));
-    for (Index m = 0; m < sweep->count; ++m) {
-      const double value = sweep->value(m);
-      if (value < lowest || value > highest) continue;
-      MatrixXd of_wave(sums.cols(), 2);
-      of_wave.col(0) = first.sd[0] * sums.row(m).imag().transpose();
-      of_wave.col(1) = first.sd[1] * sums.row(m).real().transpose();
-      for (std::size_t i = 0; i < models.size(); ++i) {
-        all_gains(m, static_cast<Index>(i)) = beside[i].Gain(of_wave);
-      }
-    }
-    for (std::size_t i = 0; i < models.size(); ++i) {
-      const auto gains = all_gains.col(static_cast<Index>(i));
-      for (Index m = 0; m < gains.size(); ++m) {
-        const double before = m > 0 ? gains[m - 1] : 0.0;
-        const double after = m + 1 < gains.size() ? gains[m + 1] : 0.0;
-        if (gains[m] <= before || gains[m] < after) continue;
-        if (best[i].MayTake(gains[m])) best[i].Take(gains[m], of_shape(m));
-      }
+    const Column waves = WavesOf(*sweep, block);
+    for (PromisesBehind& of_noise : promises) {
+      of_noise.AskWaves(place, *sweep, waves, first.sd, BoundsOf(block), of_shape);
     }
   });
-  std::vector<Variation> kept;
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    std::vector<Promise> all;
-    for (std::size_t place = 0; place < promises.size(); ++place) {
-      for (Promise& one : promises[place][i].best) {
-        const double of_model = std::max(0.5 * blocks[place].price, beside[i].least());
-        if (one.gain > of_model && kUncertain * one.gain > least) {
-          all.push_back(std::move(one));
-        }
-      }
-    }
-    std::ranges::stable_sort(all, std::greater<>(), &Promise::gain);
-    std::map<std::string, std::size_t> of_group;
-    std::size_t in_place = 0;
-    for (Promise& one : all) {
-      const std::string& group = blocks[one.variation.block].group;
-      if (!group.empty() && ++of_group[group] > kOfGroup) continue;
-      if (i > 0 && ++in_place > kInPlace) break;
-      const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
-        return other.block == one.variation.block && other.shape == one.variation.shape;
-      });
-      if (!is_known) kept.push_back(std::move(one.variation));
-    }
-  }
+  std::vector<std::vector<Variation>> kept;
+  for (PromisesBehind& one : promises) kept.push_back(one.Kept(blocks));
   return kept;
 }
 

@@ -18,16 +18,22 @@ struct WhitenedModel {
   std::vector<Eigen::Index> removed;  ///< of those that are not
 };
 
-/// @param W         whitened columns of the model, rows x k
-/// @param sd        of their amplitudes beforehand
-/// @param models    the first is the model itself
-/// @param least     what they have to gain, beside their prices
+/// Models behind one noise.
+struct WhitenedModels {
+  const RowMap& map;
+  Eigen::MatrixXd W;   ///< whitened columns of the model, rows x k
+  Eigen::VectorXd sd;  ///< of their amplitudes beforehand
+  /// The first is the model itself.
+  std::vector<WhitenedModel> models;
+  double least = 0.0;  ///< what is to be gained, beside prices
+};
+
+/// Behind each of some noises: what blocks do is made once.
 /// @param may_come  which blocks are looked at
 /// @param blocks    receive the prices of their shapes
-std::vector<Variation> PromisingVariations(
-    const Machine& machine, const BlockMotion& along, const RowMap& map,
-    const Eigen::MatrixXd& W, const Eigen::VectorXd& sd,
-    const std::vector<WhitenedModel>& models, double least, std::vector<Block>& blocks,
+std::vector<std::vector<Variation>> PromisingVariations(
+    const Machine& machine, const BlockMotion& along,
+    const std::vector<WhitenedModels>& behind, std::vector<Block>& blocks,
     const std::function<bool(const Block&)>& may_come);
 
 }  // namespace mjdiag

@@ -1,6 +1,7 @@
 #include "mjdiag/plugin/replay/noise_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -89,9 +90,13 @@ FilterNoise Refined(const FilterPath& path, const VectorXd& reading_sd, double l
 FilterNoise RefinedFromBoth(const FilterPath& path, const VectorXd& reading_sd,
                             double longest) {
   const NoiseSearch search(path, reading_sd, longest);
-  const LikelyNoise fast = search.Descend(path.noise, true);
-  const LikelyNoise slow = search.Descend(search.Slow(path.noise), true);
-  return slow.deviance < fast.deviance ? slow.noise : fast.noise;
+  const std::array<FilterNoise, 2> starts{path.noise, search.Slow(path.noise)};
+  std::array<LikelyNoise, 2> likely;
+  ParallelForAll(2, [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    likely[i] = search.Descend(starts[i], true);
+  });
+  return likely[1].deviance < likely[0].deviance ? likely[1].noise : likely[0].noise;
 }
 
 /// Logarithms a part of the way from one to another.
@@ -156,6 +161,11 @@ class LikeliestOf {
       const NoiseSearch search(best(), reading_sd_, longest_, readings_);
       const bool is_of_all = search.LooksAtAll();
       const LikelyNoise to = search.Descend(from, is_far);
+      if (to.gain < kGain) {
+        if (!is_far) break;
+        is_far = false;
+        continue;
+      }
       for (double part = 1.0; part > 0.2; part *= 0.5) {
         Follow(Between(from, to.noise, part));
         if (best().deviance < before) break;
@@ -214,12 +224,17 @@ FilterPath FilterLikeliest(const Machine& machine, const MeasuredRun& run,
   // What is missing may also be white and slow: blows, and what lasts.
   FilterNoise rough = slow;
   rough.white = fast.white;
+  std::vector<FilterPath> paths;
   for (const FilterNoise& start : {slow, rough}) {
     if (is_over && is_over()) break;
-    if (const auto path = of_pieces.Follow(start)) {
-      of_pieces.Follow(Refined(*path, reading_sd, longest, true));
-    }
+    if (auto path = of_pieces.Follow(start)) paths.push_back(std::move(*path));
   }
+  std::vector<FilterNoise> refined(paths.size());
+  ParallelForAll(static_cast<int>(paths.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    refined[i] = Refined(paths[i], reading_sd, longest, true);
+  });
+  for (const FilterNoise& noise : refined) of_pieces.Follow(noise);
   of_pieces.Improve(true);
   return OfAll(machine, run, reading_sd, dofs, of_pieces, fast, is_over,
                NoiseBy::kAllOfRun);

@@ -22,9 +22,9 @@ class MemberForces : public ::testing::Test {
     const auto found = std::ranges::find(blocks_, name, &Block::name);
     return {static_cast<std::size_t>(found - blocks_.begin()), values};
   }
-  std::vector<bool> Missed(const Model& model) const {
+  std::vector<bool> Missed(const Model& model, PhysicsSteps steps = {}) const {
     const SplitRun split{run_, run_, {0}, 1.0};
-    const AnswerData data{stage_.machine, split, noise_, blocks_, {1.0}};
+    const AnswerData data{stage_.machine, split, noise_, blocks_, steps};
     ModelOnRuns answer;
     answer.fit.model = model;
     answer.seen = FilterLikeliest(data.With(model), run_, noise_);
@@ -46,6 +46,36 @@ TEST_F(MemberForces, AreMissedFromAHundredthOfAllOn) {
   };
   EXPECT_EQ(Missed({friction, ripple(0.1)}), (std::vector<bool>{false, true}));
   EXPECT_EQ(Missed({friction, ripple(1.5)}), (std::vector<bool>{false, false}));
+}
+
+// The error that makes up for an inertia that is off by 1e-5 is hidden by the readings' noise;
+// one that a single reading shows is not, however slow it is.
+TEST_F(MemberForces, OfReadingsAreMissedWhereOneReadingShowsThem) {
+  const Member friction = Of("coulomb_friction@load", VectorXd::Constant(1, 18.0));
+  const auto scale = [&](double factor) {
+    return Of("encoder_scale@q", VectorXd::Constant(1, factor));
+  };
+  const auto drift = [&](double rate) {
+    return Of("encoder_drift@q", VectorXd::Constant(1, rate));
+  };
+  const double seconds = run_.sample_time * static_cast<double>(run_.samples());
+  EXPECT_EQ(Missed({friction, scale(1.0 + 1e-6)}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(Missed({friction, scale(1.01)}), (std::vector<bool>{false, false}));
+  EXPECT_EQ(Missed({friction, drift(0.1 * noise_[0] / seconds)}),
+            (std::vector<bool>{false, true}));
+  EXPECT_EQ(Missed({friction, drift(20.0 * noise_[0] / seconds)}),
+            (std::vector<bool>{false, false}));
+}
+
+// Steps that are not known may be half a step late: a delay of a hundredth of one is nothing.
+TEST_F(MemberForces, BelowWhatUnknownStepsHideAreNotMissed) {
+  const double step = stage_.machine.plant().opt.timestep;
+  const auto delay = [&](double steps) {
+    return Model{Of("input_delay@motor", VectorXd::Constant(1, steps * step))};
+  };
+  EXPECT_EQ(Missed(delay(0.01), {1.0}), std::vector<bool>{true});
+  EXPECT_EQ(Missed(delay(0.01)), std::vector<bool>{false});
+  EXPECT_EQ(Missed(delay(2.0), {1.0}), std::vector<bool>{false});
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ TEST(Explain, SaysHowWellValuesAreKnownBehindTheNoiseOfItsAnswer) {
     return found.steps.Of(machine);
   };
   const ModelFit anew = FitModel(machine_with, run, found.path, KeepGains(found.path),
-                                 found.blocks, found.fit.model, 0);
+                                 found.blocks, found.fit.model, {});
   ASSERT_EQ(anew.sd.size(), found.fit.sd.size());
   ASSERT_GT(anew.sd.size(), 0);
   for (Eigen::Index i = 0; i < anew.sd.size(); ++i) {

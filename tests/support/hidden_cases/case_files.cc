@@ -32,7 +32,8 @@ json ToJson(const TrueCause& cause) {
           {"effect", cause.effect}};
 }
 
-/// A number of the plant may be said as the fault that scales it and nothing else.
+/// A number of the plant may be said as the fault that scales it and nothing else, a damping as
+/// the viscous friction that there is more of.
 std::vector<TrueForm> FormsOf(const mjModel& plant, const std::string& number,
                               double factor) {
   std::vector<TrueForm> forms;
@@ -41,6 +42,14 @@ std::vector<TrueForm> FormsOf(const mjModel& plant, const std::string& number,
     const ModelParameter own{fault.kind, fault.elements[0]};
     if (ModelParameterName(plant, own) == number)
       forms.push_back({fault.name, "", {{"factor", factor}}});
+  }
+  const ModelParameter own = FindModelParameter(plant, number);
+  if (own.kind == ModelParameterKind::kDamping) {
+    const double more =
+        (1.0 - 1.0 / factor) * plant.dof_damping[plant.jnt_dofadr[own.element]];
+    forms.push_back({"viscous_friction",
+                     ElementName(plant, mjOBJ_JOINT, own.element),
+                     {{"coefficient", more}}});
   }
   return forms;
 }
