@@ -161,12 +161,9 @@ class LikeliestOf {
       const NoiseSearch search(best(), reading_sd_, longest_, readings_);
       const bool is_of_all = search.LooksAtAll();
       const LikelyNoise to = search.Descend(from, is_far);
-      if (to.gain < kGain) {
-        if (!is_far) break;
-        is_far = false;
-        continue;
-      }
-      for (double part = 1.0; part > 0.2; part *= 0.5) {
+      // On the way to what is hardly likelier nothing is, either.
+      const double shortest = to.gain < kGain ? 1.0 : 0.25;
+      for (double part = 1.0; part >= shortest; part *= 0.5) {
         Follow(Between(from, to.noise, part));
         if (best().deviance < before) break;
       }

@@ -48,18 +48,21 @@ TEST_F(MemberForces, AreMissedFromAHundredthOfAllOn) {
   EXPECT_EQ(Missed({friction, ripple(1.5)}), (std::vector<bool>{false, false}));
 }
 
-// The error that makes up for an inertia that is off by 1e-5 is hidden by the readings' noise;
-// one that a single reading shows is not, however slow it is.
+// The error that makes up for an inertia that is off by 1e-7 is hidden by the readings' noise;
+// one that a single reading shows is not, however slow it is, nor one in which there are jolts.
 TEST_F(MemberForces, OfReadingsAreMissedWhereOneReadingShowsThem) {
   const Member friction = Of("coulomb_friction@load", VectorXd::Constant(1, 18.0));
   const auto scale = [&](double factor) {
-    return Of("encoder_scale@q", VectorXd::Constant(1, factor));
+    return Of("encoder_scale@load_encoder", VectorXd::Constant(1, factor));
   };
   const auto drift = [&](double rate) {
-    return Of("encoder_drift@q", VectorXd::Constant(1, rate));
+    return Of("encoder_drift@load_encoder", VectorXd::Constant(1, rate));
   };
+  const Member fine_wave =
+      Of("encoder_periodic_error@load_encoder", Eigen::Vector3d(4.0 * noise_[0], 1e-4, 0.7));
+  EXPECT_EQ(Missed({friction, fine_wave}), (std::vector<bool>{false, false}));
   const double seconds = run_.sample_time * static_cast<double>(run_.samples());
-  EXPECT_EQ(Missed({friction, scale(1.0 + 1e-6)}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(Missed({friction, scale(1.0 + 1e-7)}), (std::vector<bool>{false, true}));
   EXPECT_EQ(Missed({friction, scale(1.01)}), (std::vector<bool>{false, false}));
   EXPECT_EQ(Missed({friction, drift(0.1 * noise_[0] / seconds)}),
             (std::vector<bool>{false, true}));
@@ -71,7 +74,7 @@ TEST_F(MemberForces, OfReadingsAreMissedWhereOneReadingShowsThem) {
 TEST_F(MemberForces, BelowWhatUnknownStepsHideAreNotMissed) {
   const double step = stage_.machine.plant().opt.timestep;
   const auto delay = [&](double steps) {
-    return Model{Of("input_delay@motor", VectorXd::Constant(1, steps * step))};
+    return Model{Of("input_delay@drive", VectorXd::Constant(1, steps * step))};
   };
   EXPECT_EQ(Missed(delay(0.01), {1.0}), std::vector<bool>{true});
   EXPECT_EQ(Missed(delay(0.01)), std::vector<bool>{false});
