@@ -251,6 +251,27 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
   return settled;
 }
 
+std::vector<std::optional<ConvergedModel>> SettleInPlaceOf(
+    const ConvergedModel& found, const ConvergedBeside& beside,
+    const std::vector<Model>& models, double hoped) {
+  const KeptGains gains = KeepGains(found.path);
+  std::vector<std::optional<ModelFit>> fitted(models.size());
+  ParallelForAll(static_cast<int>(models.size()), [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    try {
+      fitted[i] = FitModel(beside.machine_with, beside.run, found.path, gains,
+                           beside.blocks, models[i], {});
+    } catch (const NumericalError&) {
+    } catch (const InputError&) {
+    }
+  });
+  std::vector<ModelFit> fits;
+  for (std::optional<ModelFit>& one : fitted) {
+    if (one) fits.push_back(std::move(*one));
+  }
+  return SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(), hoped);
+}
+
 ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit,
                           FilterPath path) {
   const double beat = ConvergedModel{fit, path}.score();

@@ -109,22 +109,17 @@ bool ModelSearch::ChooseFriction() {
 }
 
 void ModelSearch::AskRunnersUp(std::vector<Model> runners_up) {
-  const KeptGains gains = KeepGains(found_.path);
-  std::vector<ModelFit> fits;
+  std::vector<Model> models;
   for (const Model& one : runners_up) {
-    const Model model = InFormsOf(found_.blocks, one, found_.fit.model);
-    if (HaveSameBlocks(model, one) || HaveSameBlocks(model, found_.fit.model)) continue;
-    try {
-      fits.push_back(FitModel([&](const Model& of) { return With(of); }, run_,
-                              found_.path, gains, found_.blocks, model, {}));
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
-    }
+    Model model = InFormsOf(found_.blocks, one, found_.fit.model);
+    const bool is_another = !HaveSameBlocks(model, one) &&
+                            !HaveSameBlocks(model, found_.fit.model);
+    if (is_another) models.push_back(std::move(model));
   }
   // Each may come out best.
   const double hoped = found_.nothing.deviance - found_.score;
-  auto settled = SettleRivals(Beside(steps_), std::move(fits), {found_.path.noise},
-                              found_.score, hoped);
+  auto settled =
+      SettleInPlaceOf({found_.fit, found_.path}, Beside(steps_), models, hoped);
   for (auto& one : settled) {
     if (!one || !IsOne(one->fit.model)) continue;
     if (one->score() > found_.score - kLeastGain) continue;

@@ -153,11 +153,19 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   const std::size_t noises = whitenings.behind.size();
   std::vector<Attempt> attempts;
   const FitEffort effort = EffortFor(moves, iterations);
+  const ModelMove* best_idle = nullptr;
   const auto may_be = [&](const ModelMove& move) {
-    return MayBe(move) && !PromisesNothing(move, moves.score - move.score) &&
-           !IsIdle(move);
+    if (!MayBe(move) || PromisesNothing(move, moves.score - move.score)) return false;
+    const bool is_idle = IsIdle(move);
+    if (is_idle && best_idle == nullptr) best_idle = &move;
+    return !is_idle;
   };
-  for (const ModelMove* move : ToBeFitted(moves, most, may_be)) {
+  const std::vector<const ModelMove*> chosen = ToBeFitted(moves, most, may_be);
+  if (best_idle != nullptr) {
+    Decide(After(*best_idle, found_.fit.model), best_idle->score - moves.score,
+           "nobody would miss what it adds");
+  }
+  for (const ModelMove* move : chosen) {
     const Model model = After(*move, found_.fit.model);
     attempts.push_back({model, move, {}});
     // Behind what sticks a filter may be lost, or without it: both are tried of what comes in.

@@ -79,10 +79,6 @@ std::optional<ConvergedModel> Followed(const ConvergedBeside& beside,
   return one;
 }
 
-}  // namespace
-
-namespace {
-
 Index ValuesIn(const Model& model) {
   Index values = 0;
   for (const Member& member : model) values += member.values.size();
@@ -100,21 +96,10 @@ double WithClaims(const ConvergedModel& one) {
 std::optional<ConvergedModel> BestFitted(const ConvergedBeside& beside,
                                          const std::vector<Model>& forms,
                                          const ConvergedModel& found) {
-  const KeptGains gains = KeepGains(found.path);
-  std::vector<ModelFit> fits;
-  for (const Model& form : forms) {
-    try {
-      fits.push_back(FitModel(beside.machine_with, beside.run, found.path, gains,
-                              beside.blocks, form, {}));
-    } catch (const NumericalError&) {
-    } catch (const InputError&) {
-    }
-  }
   // Each may come out best.
   const double hoped = std::max(kLeastGain, std::abs(found.score()));
   std::optional<ConvergedModel> best;
-  for (auto& one : SettleRivals(beside, std::move(fits), {found.path.noise},
-                                found.score(), hoped)) {
+  for (auto& one : SettleInPlaceOf(found, beside, forms, hoped)) {
     if (!one || WithClaims(*one) > WithClaims(found) - kLeastGain) continue;
     if (!best || WithClaims(*one) < WithClaims(*best)) best = std::move(one);
   }

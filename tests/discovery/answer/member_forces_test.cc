@@ -58,8 +58,8 @@ TEST_F(MemberForces, OfReadingsAreMissedWhereOneReadingShowsThem) {
   const auto drift = [&](double rate) {
     return Of("encoder_drift@load_encoder", VectorXd::Constant(1, rate));
   };
-  const Member fine_wave =
-      Of("encoder_periodic_error@load_encoder", Eigen::Vector3d(4.0 * noise_[0], 1e-4, 0.7));
+  const Member fine_wave = Of("encoder_periodic_error@load_encoder",
+                              Eigen::Vector3d(4.0 * noise_[0], 1e-4, 0.7));
   EXPECT_EQ(Missed({friction, fine_wave}), (std::vector<bool>{false, false}));
   const double seconds = run_.sample_time * static_cast<double>(run_.samples());
   EXPECT_EQ(Missed({friction, scale(1.0 + 1e-7)}), (std::vector<bool>{false, true}));
