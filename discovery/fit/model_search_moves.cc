@@ -112,8 +112,9 @@ bool ModelSearch::IsIdle(const ModelMove& move) {
   }
   const Standing& standing = StandingNow();
   std::vector<ScaledColumn> members;
-  for (const Term& term : standing.exact.terms)
+  for (const Term& term : standing.exact.terms) {
     members.emplace_back(1.0, &term.removed);
+  }
   const Column* steps = steps_.without > 0.0 ? &standing.exact.other_steps : nullptr;
   const Negligible negligible(machine_, found_.path, reading_sd_, members, steps);
   return negligible.IsForce(columns) && negligible.IsError(columns);
