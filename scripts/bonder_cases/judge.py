@@ -118,12 +118,12 @@ def judge_listed(answer, truth, tolerance):
             faults.append(f"no {cause['effect'].split(':')[0]}")
     for name, number in truth["numbers"].items():
         numbers.discard(name)
-        by_fault = [one for one in left for form in number.get("forms", [])
+        by_fault = [(one, form) for one in left for form in number.get("forms", [])
                     if says(one, form)]
         if by_fault:
-            left.remove(by_fault[0])
-            is_near = values_near(by_fault[0]["parameters"], {"factor": number["factor"]},
-                                  tolerance)
+            one, form = by_fault[0]
+            left.remove(one)
+            is_near = values_near(one["parameters"], form["values"], tolerance)
         else:
             is_near = number_near(answer, name, number["factor"], tolerance)
         if not is_near:

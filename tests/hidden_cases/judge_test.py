@@ -74,6 +74,13 @@ class Judge(unittest.TestCase):
         found = answer([("zeta_y", "Y", 0.9, {"value": 1.08})])
         self.assertFalse(self.right(found, truth([], damper)))
 
+    def test_a_damping_may_be_said_as_the_friction_that_there_is_more_of(self):
+        damper = {"damping@Z": {"factor": 1.08, "sites": ["Z"], "forms": [
+            {"name": "viscous_friction", "site": "Z", "values": {"coefficient": 2.3e-4}}]}}
+        for value, right in ((2.33e-4, True), (3.3e-4, False)):
+            found = answer([("viscous_friction", "Z", 0.9, {"coefficient": value})])
+            self.assertEqual(self.right(found, truth([], damper)), right)
+
     def test_a_law_of_no_list_needs_kind_place_and_gain(self):
         kinds = [("compliance", "u1")]
         self.assertTrue(self.right(answer(kinds=kinds), truth([RUBBER])))
