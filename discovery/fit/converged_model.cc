@@ -269,7 +269,8 @@ std::vector<std::optional<ConvergedModel>> SettleInPlaceOf(
   for (std::optional<ModelFit>& one : fitted) {
     if (one) fits.push_back(std::move(*one));
   }
-  return SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(), hoped);
+  return SettleRivals(beside, std::move(fits), {found.path.noise}, found.score(),
+                      hoped);
 }
 
 ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit,

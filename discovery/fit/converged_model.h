@@ -43,10 +43,9 @@ std::vector<std::optional<ConvergedModel>> SettleRivals(
 
 /// Models with the values that they have in the place of a converged one, along its path.
 /// @param hoped  what each may gain
-std::vector<std::optional<ConvergedModel>> SettleInPlaceOf(const ConvergedModel& found,
-                                                           const ConvergedBeside& beside,
-                                                           const std::vector<Model>& models,
-                                                           double hoped);
+std::vector<std::optional<ConvergedModel>> SettleInPlaceOf(
+    const ConvergedModel& found, const ConvergedBeside& beside,
+    const std::vector<Model>& models, double hoped);
 
 /// From a path along the run that is near to what suits: fitted, and its noise anew, once.
 ConvergedModel SettleNear(const ConvergedBeside& beside, ModelFit fit, FilterPath path);

@@ -112,8 +112,8 @@ void ModelSearch::AskRunnersUp(std::vector<Model> runners_up) {
   std::vector<Model> models;
   for (const Model& one : runners_up) {
     Model model = InFormsOf(found_.blocks, one, found_.fit.model);
-    const bool is_another = !HaveSameBlocks(model, one) &&
-                            !HaveSameBlocks(model, found_.fit.model);
+    const bool is_another =
+        !HaveSameBlocks(model, one) && !HaveSameBlocks(model, found_.fit.model);
     if (is_another) models.push_back(std::move(model));
   }
   // Each may come out best.
