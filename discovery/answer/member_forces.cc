@@ -23,11 +23,14 @@ std::vector<bool> NobodyWouldMiss(const AnswerData& data, const ModelOnRuns& ans
     others.push_back({data.With(Without(model, m))});
   }
   others.push_back({data.With({})});
-  AnswerData other = data;
-  other.steps = data.steps.Other();
-  others.push_back({other.With(model)});
+  const bool has_steps = data.steps.without == 0.0;
+  if (!has_steps) {
+    AnswerData other = data;
+    other.steps = data.steps.Other();
+    others.push_back({other.With(model)});
+  }
   const std::vector<Column> columns = TickColumns(machine, data.run.seen, path, others);
-  const Column* steps = data.steps.without > 0.0 ? &columns.back() : nullptr;
+  const Column* steps = has_steps ? nullptr : &columns.back();
   const Negligible negligible(data.machine, path, data.reading_sd,
                               {{1.0, &columns[model.size()]}}, steps);
   std::vector<bool> idle(model.size(), false);

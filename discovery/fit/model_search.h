@@ -16,6 +16,7 @@
 #include "mjdiag/discovery/fit/exact_columns.h"
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/discovery/fit/moved_model.h"
+#include "mjdiag/discovery/regression/negligible.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/runtime/work_time.h"
 #include "mjdiag/signals/error.h"
@@ -84,8 +85,8 @@ class ModelSearch {
     std::map<bool, Moves> moves;  ///< at the simplest shapes, and at every
   };
   Standing& StandingNow();
-  /// Whether nobody would miss what it adds (negligible.h).
-  bool IsIdle(const ModelMove& move);
+  /// Beside the model as it is.
+  Negligible NegligibleNow();
   const Moves& MovesNow(Standing& standing);
   struct StepsBehind {
     PhysicsSteps steps;

@@ -16,7 +16,6 @@
 #include "mjdiag/discovery/fit/pruned_fit.h"
 #include "mjdiag/discovery/regression/force_moves.h"
 #include "mjdiag/discovery/regression/moves.h"
-#include "mjdiag/discovery/regression/negligible.h"
 #include "mjdiag/discovery/regression/whitenings.h"
 #include "mjdiag/plugin/runtime/parallel.h"
 #include "mjdiag/signals/error.h"
@@ -32,6 +31,19 @@ constexpr int kIterations = 6;
 constexpr double kLittle = 0.02;
 // What loses so many times what first order promised is what that knows nothing of.
 constexpr double kNonsense = 10.0;
+/// Whether nobody would miss what a move adds.
+bool IsIdle(const ModelMove& move, const Negligible& negligible) {
+  if (move.added.empty()) return false;
+  std::vector<ScaledColumn> columns;
+  for (const Added& added : move.added) {
+    const std::vector<Column>& of_one = added.variation.columns;
+    for (std::size_t i = 0; i < of_one.size(); ++i) {
+      columns.emplace_back(added.amplitudes[static_cast<Eigen::Index>(i)], &of_one[i]);
+    }
+  }
+  return negligible.IsForce(columns) && negligible.IsError(columns);
+}
+
 // From there a fit goes the same way.
 constexpr double kAsNear = 1e-3;
 
@@ -101,23 +113,14 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestMove(Standing& standing) {
   return BestOf(moves, 4, kIterations, whitenings, standing.as_fitted, false);
 }
 
-bool ModelSearch::IsIdle(const ModelMove& move) {
-  if (move.added.empty()) return false;
-  std::vector<ScaledColumn> columns;
-  for (const Added& added : move.added) {
-    const std::vector<Column>& of_one = added.variation.columns;
-    for (std::size_t i = 0; i < of_one.size(); ++i) {
-      columns.emplace_back(added.amplitudes[static_cast<Eigen::Index>(i)], &of_one[i]);
-    }
-  }
+Negligible ModelSearch::NegligibleNow() {
   const Standing& standing = StandingNow();
   std::vector<ScaledColumn> members;
   for (const Term& term : standing.exact.terms) {
     members.emplace_back(1.0, &term.removed);
   }
   const Column* steps = steps_.without > 0.0 ? &standing.exact.other_steps : nullptr;
-  const Negligible negligible(machine_, found_.path, reading_sd_, members, steps);
-  return negligible.IsForce(columns) && negligible.IsError(columns);
+  return {machine_, found_.path, reading_sd_, members, steps};
 }
 
 ModelFit ModelSearch::Fitted(const Model& model, const Whitenings& whitenings,
@@ -154,10 +157,11 @@ std::optional<ModelSearch::Proposal> ModelSearch::BestOf(
   const std::size_t noises = whitenings.behind.size();
   std::vector<Attempt> attempts;
   const FitEffort effort = EffortFor(moves, iterations);
+  const Negligible negligible = NegligibleNow();
   const ModelMove* best_idle = nullptr;
   const auto may_be = [&](const ModelMove& move) {
     if (!MayBe(move) || PromisesNothing(move, moves.score - move.score)) return false;
-    const bool is_idle = IsIdle(move);
+    const bool is_idle = IsIdle(move, negligible);
     if (is_idle && best_idle == nullptr) best_idle = &move;
     return !is_idle;
   };

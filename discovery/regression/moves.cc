@@ -73,18 +73,8 @@ std::vector<Variation> MoveSearch::Promising(const Scored& here) const {
                         FitSet(grams_[here.noise], ColumnsOf({})).unseen;
     behind.push_back(ModelsBehind(smaller, lost));
   }
-  std::vector<Variation> kept;
-  for (std::vector<Variation>& of_noise :
-       PromisingVariations(machine_, along_, behind, blocks_,
-                           [this](const Block& block) { return MayCome(block); })) {
-    for (Variation& one : of_noise) {
-      const bool is_known = std::ranges::any_of(kept, [&](const Variation& other) {
-        return other.block == one.block && other.shape == one.shape;
-      });
-      if (!is_known) kept.push_back(std::move(one));
-    }
-  }
-  return kept;
+  return PromisingVariations(machine_, along_, behind, blocks_,
+                             [this](const Block& block) { return MayCome(block); });
 }
 
 WhitenedModels MoveSearch::ModelsBehind(std::size_t noise, double least) const {

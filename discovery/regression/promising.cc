@@ -215,9 +215,8 @@ class PromisesBehind {
     }
   }
 
-  /// The most promising.
-  std::vector<Variation> Kept(const std::vector<Block>& blocks) {
-    std::vector<Variation> kept;
+  /// The most promising join those that are kept already.
+  void KeepIn(const std::vector<Block>& blocks, std::vector<Variation>& kept) {
     for (std::size_t i = 0; i < beside_.size(); ++i) {
       std::map<std::string, std::size_t> of_group;
       std::size_t in_place = 0;
@@ -232,7 +231,6 @@ class PromisesBehind {
         if (!is_known) kept.push_back(std::move(one.variation));
       }
     }
-    return kept;
   }
 
  private:
@@ -261,7 +259,7 @@ class PromisesBehind {
 
 }  // namespace
 
-std::vector<std::vector<Variation>> PromisingVariations(
+std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along,
     const std::vector<WhitenedModels>& behind, std::vector<Block>& blocks,
     const std::function<bool(const Block&)>& may_come) {
@@ -291,8 +289,8 @@ std::vector<std::vector<Variation>> PromisingVariations(
       of_noise.AskWaves(place, *sweep, waves, first.sd, BoundsOf(block), of_shape);
     }
   });
-  std::vector<std::vector<Variation>> kept;
-  for (PromisesBehind& one : promises) kept.push_back(one.Kept(blocks));
+  std::vector<Variation> kept;
+  for (PromisesBehind& one : promises) one.KeepIn(blocks, kept);
   return kept;
 }
 

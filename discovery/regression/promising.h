@@ -28,10 +28,10 @@ struct WhitenedModels {
   double least = 0.0;  ///< what is to be gained, beside prices
 };
 
-/// Behind each of some noises: what blocks do is made once.
+/// Behind all of some noises: what blocks do is made once.
 /// @param may_come  which blocks are looked at
 /// @param blocks    receive the prices of their shapes
-std::vector<std::vector<Variation>> PromisingVariations(
+std::vector<Variation> PromisingVariations(
     const Machine& machine, const BlockMotion& along,
     const std::vector<WhitenedModels>& behind, std::vector<Block>& blocks,
     const std::function<bool(const Block&)>& may_come);

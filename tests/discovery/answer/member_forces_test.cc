@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "mjdiag/discovery/hypotheses/candidate.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "mjdiag/plugin/replay/sensor_noise.h"
+#include "support/member_of.h"
 #include "support/stage.h"
 
 namespace mjdiag {
@@ -19,8 +19,7 @@ using Eigen::VectorXd;
 class MemberForces : public ::testing::Test {
  protected:
   Member Of(const std::string& name, const VectorXd& values) const {
-    const auto found = std::ranges::find(blocks_, name, &Block::name);
-    return {static_cast<std::size_t>(found - blocks_.begin()), values};
+    return test::MemberOf(blocks_, name, values);
   }
   std::vector<bool> Missed(const Model& model, PhysicsSteps steps = {}) const {
     const SplitRun split{run_, run_, {0}, 1.0};
@@ -44,8 +43,8 @@ TEST_F(MemberForces, AreMissedFromAHundredthOfAllOn) {
   const auto ripple = [&](double amplitude) {
     return Of("force_ripple@load", Eigen::Vector3d(amplitude, 0.02, 0.7));
   };
-  EXPECT_EQ(Missed({friction, ripple(0.1)}), (std::vector<bool>{false, true}));
-  EXPECT_EQ(Missed({friction, ripple(1.5)}), (std::vector<bool>{false, false}));
+  EXPECT_EQ(Missed({friction, ripple(0.1)}, {1.0}), (std::vector<bool>{false, true}));
+  EXPECT_EQ(Missed({friction, ripple(1.5)}, {1.0}), (std::vector<bool>{false, false}));
 }
 
 // The error that makes up for an inertia that is off by 1e-7 is hidden by the readings' noise;

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "mjdiag/discovery/fit/explain.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "support/arm.h"
+#include "support/member_of.h"
 
 namespace mjdiag {
 namespace {
@@ -30,11 +30,9 @@ class ValuesThatPredict : public ::testing::Test {
   }
   std::optional<BetterValues> BetterThan(double friction) const {
     const AnswerData data{arm_.machine, run_, sd_, blocks_};
-    const auto block =
-        std::ranges::find(blocks_, "viscous_friction@elbow", &Block::name);
     ModelOnRuns answer;
-    answer.fit.model = {{static_cast<std::size_t>(block - blocks_.begin()),
-                         VectorXd::Constant(1, friction)}};
+    answer.fit.model = {test::MemberOf(blocks_, "viscous_friction@elbow",
+                                       VectorXd::Constant(1, friction))};
     const Machine machine = data.With(answer.fit.model);
     answer.seen = FilterLikeliest(machine, run_.seen, sd_);
     answer.unseen = FilterLikeliest(machine, run_.unseen, sd_);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "mjdiag/plugin/replay/kept_gains.h"
 #include "mjdiag/plugin/replay/noise_fit.h"
 #include "support/arm.h"
+#include "support/member_of.h"
 
 namespace mjdiag {
 namespace {
@@ -19,8 +19,7 @@ using Eigen::VectorXd;
 class FitModelTo : public ::testing::Test {
  protected:
   Model Of(const std::string& name, const VectorXd& values) const {
-    const auto found = std::ranges::find(blocks_, name, &Block::name);
-    return {{static_cast<std::size_t>(found - blocks_.begin()), values}};
+    return {test::MemberOf(blocks_, name, values)};
   }
   /// From a model on; how many machines were asked for is left in `machines_`.
   ModelFit Fitted(const Model& start, const FitEffort& effort) {
